@@ -1,1 +1,13 @@
-//! placeholder
+//! All that two processes of a creature must agree on.
+//!
+//! - [`clock`]: the only place that tells the time, real or virtual
+//! - [`message`]: what travels on a wire
+//! - [`tap`]: suppression and inhibition, as pure functions
+//! - [`wire`]: cells, pages, registers and outlets, in plain memory or over iceoryx2
+//!
+//! Must never know a behaviour or a body.
+
+pub mod clock;
+pub mod message;
+pub mod tap;
+pub mod wire;

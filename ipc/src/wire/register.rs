@@ -1,0 +1,340 @@
+//! A register: the one-element buffer behind an input port, with the suppressors that stand before it.
+//!
+//! Must never queue, allocate after it was built, or wait. It holds the newest message delivered; messages
+//! that come faster than they are looked at overwrite each other, by design (Brooks 1991 §6.2).
+//!
+//! ```text
+//!   existing wire ──► (S level 1) ──► (S level 1, declared later) ──► (S level 2) ──► register ──► module
+//! ```
+
+use super::page::Reader;
+use crate::clock::{Span, Time};
+use crate::message::{Kind, WORDS_MAX, Words};
+use crate::tap::{self, Window};
+
+/// Most suppressors on one input, and inhibitors on one output: one for each level above it and then
+/// some; the source's largest stack has fourteen layers (Brooks 1991 §8.2).
+pub const TAPS_MAX: usize = 16;
+
+/// How far ahead of the beat a stamp may lie: all clocks are one clock, so only the time the beat itself
+/// has been running counts, and a beat that ran longer than this was an overrun of any sensible period.
+pub const AHEAD_MAX: Span = Span::millis(100);
+
+/// Who a tap belongs to: 0 for the creature file itself, else the number of the plugged layer.
+pub type Plug = u32;
+
+/// A tap as it is joined to a port.
+#[derive(Debug)]
+pub struct TapEnd {
+    /// Where its messages come from.
+    pub reader: Reader,
+    /// Its time constant τ.
+    pub time_constant: Span,
+    /// Level of the layer it comes from.
+    pub level: u8,
+    /// Whose it is.
+    pub plug: Plug,
+    /// Its number in the creature, for those who watch.
+    pub id: u32,
+}
+
+/// What was counted at one tap.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct TapCounts {
+    /// Messages of the tap that took effect.
+    pub delivered: u64,
+    /// Messages of the wire that the tap's windows rejected or dropped.
+    pub rejected: u64,
+    /// Messages of the tap that were no message: not a number, out of range, or stamped in the future.
+    pub faults: u64,
+}
+
+/// A tap with what was last seen of it.
+#[derive(Debug)]
+pub(super) struct Joined {
+    pub(super) end: TapEnd,
+    pub(super) seen: u64,
+    pub(super) window: Option<Window>,
+    pub(super) words: Words,
+    /// Whether its newest message came in at the last look.
+    pub(super) fresh: bool,
+    /// Told to go; stays until its window has run out, so that nothing rejected comes back to life.
+    pub(super) leaving: bool,
+    pub(super) counts: TapCounts,
+}
+
+impl Joined {
+    pub(super) fn new(end: TapEnd) -> Joined {
+        // A message written before the tap was joined has no effect: the wire was not tapped then.
+        let seen = end.reader.read().map_or(0, |r| r.number);
+        Joined {
+            end,
+            seen,
+            window: None,
+            words: [0.0; WORDS_MAX],
+            fresh: false,
+            leaving: false,
+            counts: TapCounts::default(),
+        }
+    }
+
+    /// Takes in the tap's newest message if there is one that was not seen.
+    pub(super) fn look(&mut self, now: Time, limits: Option<&Limits>) {
+        self.fresh = false;
+        if self.leaving {
+            return;
+        }
+        let Some(reading) = self.end.reader.newer_than(self.seen) else {
+            return;
+        };
+        self.seen = reading.number;
+        let newest = self.window.map_or(Time::ZERO, |w| w.stamp);
+        let stamp = match plausible(reading.stamp, now) {
+            Some(stamp) if stamp >= newest && limits.is_none_or(|l| l.accept(&reading.words)) => stamp,
+            _ => {
+                self.counts.faults += 1;
+                return;
+            }
+        };
+        self.window = Some(Window {
+            stamp,
+            time_constant: self.end.time_constant,
+        });
+        self.words = reading.words;
+        self.fresh = true;
+    }
+
+    pub(super) fn state(&self) -> TapState {
+        TapState {
+            id: self.end.id,
+            window: self.window,
+            counts: self.counts,
+        }
+    }
+
+    pub(super) fn gone(&self, now: Time) -> bool {
+        self.leaving && self.window.is_none_or(|w| now >= w.stamp + w.time_constant)
+    }
+}
+
+/// What an input port takes: kind and range of every number.
+#[derive(Clone, Copy, Debug)]
+pub struct Limits {
+    /// The kind of message.
+    pub kind: Kind,
+    /// Smallest value of any number in it.
+    pub low: f64,
+    /// Largest value of any number in it.
+    pub high: f64,
+}
+
+impl Limits {
+    fn accept(&self, words: &Words) -> bool {
+        self.kind.accepts(words, self.low, self.high)
+    }
+}
+
+/// What was counted at one input.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct InputCounts {
+    /// Messages delivered to the register, from the wire or a tap.
+    pub delivered: u64,
+    /// Messages of the existing wire that a suppressor rejected.
+    pub rejected: u64,
+    /// Messages that were no message (not a number, out of range, stamped in the future).
+    pub faults: u64,
+}
+
+/// The register behind one input port.
+#[derive(Debug)]
+pub struct Register {
+    limits: Limits,
+    wire: Option<Reader>,
+    seen: u64,
+    taps: Vec<Joined>,
+    held: Option<(Time, Words)>,
+    arrived: bool,
+    counts: InputCounts,
+}
+
+impl Register {
+    /// A register for messages within `limits`, fed by `wire` if the port is connected.
+    pub fn new(limits: Limits, wire: Option<Reader>) -> Register {
+        Register {
+            limits,
+            wire,
+            seen: 0,
+            taps: Vec::with_capacity(TAPS_MAX),
+            held: None,
+            arrived: false,
+            counts: InputCounts::default(),
+        }
+    }
+
+    /// Joins a suppressor: after those of lower or equal level, before those of higher level. Does not
+    /// allocate. `Err` gives the tap back when [`TAPS_MAX`] stand there already.
+    pub fn suppress(&mut self, end: TapEnd) -> Result<(), TapEnd> {
+        join(&mut self.taps, end)
+    }
+
+    /// Tells the suppressors of `plug` to go. Their windows still run out as they would have.
+    pub fn release(&mut self, plug: Plug) {
+        release(&mut self.taps, plug);
+    }
+
+    /// Looks at the wire and the taps, once a beat, before the module steps. `gone` is handed each tap that
+    /// has left for good, to be dropped on a thread that may.
+    pub fn gather(&mut self, now: Time, gone: impl FnMut(TapEnd)) {
+        self.arrived = false;
+        let original = self.look(now);
+        if self.taps.is_empty() {
+            if let Some((stamp, words)) = original {
+                self.deliver(stamp, words);
+            }
+            return;
+        }
+        for tap in &mut self.taps {
+            tap.look(now, Some(&self.limits));
+        }
+        let mut newest = None;
+        if let Some((stamp, words)) = original {
+            if self.passes_from(0, stamp) {
+                newest = Some((stamp, words));
+            } else {
+                self.counts.rejected += 1;
+            }
+        }
+        for k in 0..self.taps.len() {
+            let Joined {
+                fresh: true,
+                window: Some(window),
+                words,
+                ..
+            } = self.taps[k]
+            else {
+                continue;
+            };
+            if self.passes_from(k + 1, window.stamp) {
+                self.taps[k].counts.delivered += 1;
+                if newest.is_none_or(|(stamp, _)| window.stamp >= stamp) {
+                    newest = Some((window.stamp, words));
+                }
+            }
+        }
+        if let Some((stamp, words)) = newest {
+            self.deliver(stamp, words);
+        }
+        sweep(&mut self.taps, now, gone);
+    }
+
+    /// The newest message of the existing wire, if it was not seen before and is one.
+    fn look(&mut self, now: Time) -> Option<(Time, Words)> {
+        let reading = self.wire.as_ref()?.newer_than(self.seen)?;
+        self.seen = reading.number;
+        match plausible(reading.stamp, now) {
+            Some(stamp) if self.limits.accept(&reading.words) => Some((stamp, reading.words)),
+            _ => {
+                self.counts.faults += 1;
+                None
+            }
+        }
+    }
+
+    /// Whether a message stamped `u` gets through the suppressors from the `first` on; counts it with the
+    /// one that rejects it.
+    fn passes_from(&mut self, first: usize, u: Time) -> bool {
+        let above = &mut self.taps[first..];
+        if tap::passes(u, above.iter().filter_map(|t| t.window)) {
+            return true;
+        }
+        if let Some(tap) = above.iter_mut().rfind(|t| t.window.is_some_and(|w| w.holds(u))) {
+            tap.counts.rejected += 1;
+        }
+        false
+    }
+
+    fn deliver(&mut self, stamp: Time, words: Words) {
+        self.counts.delivered += 1;
+        // Writes of other threads may be seen out of order: what is older than the message held was
+        // overwritten by it.
+        if self.held.is_none_or(|(held, _)| stamp >= held) {
+            self.held = Some((stamp, words));
+            self.arrived = true;
+        }
+    }
+
+    /// The message held, with its stamp; `None` until the first was delivered.
+    pub fn held(&self) -> Option<&(Time, Words)> {
+        self.held.as_ref()
+    }
+
+    /// Whether a message was delivered at the last [`Register::gather`].
+    pub fn arrived(&self) -> bool {
+        self.arrived
+    }
+
+    /// Forgets the message held: what a reset line does.
+    pub fn clear(&mut self) {
+        self.held = None;
+        self.arrived = false;
+    }
+
+    /// What was counted so far.
+    pub fn counts(&self) -> InputCounts {
+        self.counts
+    }
+
+    /// The taps as they stand in series, for those who watch.
+    pub fn taps(&self) -> impl Iterator<Item = TapState> {
+        self.taps.iter().map(Joined::state)
+    }
+}
+
+/// A tap as it stands, for those who watch.
+#[derive(Clone, Copy, Debug)]
+pub struct TapState {
+    /// The tap's number in the creature.
+    pub id: u32,
+    /// Its newest message's window.
+    pub window: Option<Window>,
+    /// What was counted.
+    pub counts: TapCounts,
+}
+
+/// The stamp of a message read at `now`: never later than `now` (it was written while this beat was
+/// already under way), or `None` if it lies so far ahead that its writer's clock is wrong.
+fn plausible(stamp: Time, now: Time) -> Option<Time> {
+    (stamp <= now + AHEAD_MAX).then(|| stamp.min(now))
+}
+
+/// Joins `end` after taps of lower or equal level; gives it back when there is no room.
+pub(super) fn join(taps: &mut Vec<Joined>, end: TapEnd) -> Result<(), TapEnd> {
+    if taps.len() == TAPS_MAX {
+        return Err(end);
+    }
+    let place = taps
+        .iter()
+        .position(|t| t.end.level > end.level)
+        .unwrap_or(taps.len());
+    taps.insert(place, Joined::new(end));
+    Ok(())
+}
+
+/// Tells the taps of `plug` to go.
+pub(super) fn release(taps: &mut [Joined], plug: Plug) {
+    for tap in taps.iter_mut().filter(|t| t.end.plug == plug) {
+        tap.leaving = true;
+    }
+}
+
+/// Hands over the taps that have left and whose windows have run out.
+pub(super) fn sweep(taps: &mut Vec<Joined>, now: Time, mut gone: impl FnMut(TapEnd)) {
+    let mut k = 0;
+    while k < taps.len() {
+        if taps[k].gone(now) {
+            gone(taps.remove(k).end);
+        } else {
+            k += 1;
+        }
+    }
+}
