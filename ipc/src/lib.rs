@@ -4,6 +4,7 @@
 //! - [`message`]: what travels on a wire
 //! - [`tap`]: suppression and inhibition, as pure functions
 //! - [`wire`]: cells, pages, registers and outlets, in plain memory or over iceoryx2
+//! - [`wiring`]: creature files and manifests, read and checked
 //!
 //! Must never know a behaviour or a body.
 
@@ -11,3 +12,4 @@ pub mod clock;
 pub mod message;
 pub mod tap;
 pub mod wire;
+pub mod wiring;
