@@ -22,10 +22,16 @@ function figure(name) {
   const caption = document.createElement("figcaption");
   const title = document.createElement("b");
   const detail = document.createElement("span");
+  const words = {};
+  for (const part of ["p50", "p99", "max", "period", "overruns"]) {
+    words[part] = document.createElement("i");
+    words[part].className = part;
+    detail.append(words[part]);
+  }
   caption.append(title, detail);
   const picture = element("svg", { viewBox: `0 0 ${WIDTH} ${HEIGHT + AXIS}`, role: "img" });
   outer.append(caption, picture);
-  return { outer, title, detail, picture, drawn: "" };
+  return { outer, title, words, picture, drawn: "" };
 }
 
 /** Powers of ten that hold everything worth showing. */
@@ -87,11 +93,11 @@ export function showLatency(layers) {
     const shown = figures.get(layer.name);
     if (place.children[index] !== shown.outer) place.insertBefore(shown.outer, place.children[index] ?? null);
     const us = layer.latency_us ?? {};
-    const late = layer.overruns ? `, ${layer.overruns} overrun${layer.overruns === 1 ? "" : "s"}` : "";
     const marks = ["p50", "p99", "max"].map((name) => `${name} ${span(us[name] / 1000)}`).join("  ");
     say(shown.title, `${layer.level ?? ""} ${layer.name}`);
-    say(shown.detail, `${marks} · every ${span(layer.period_ms)}${late}`);
-    shown.outer.classList.toggle("late", layer.overruns > 0);
+    for (const name of ["p50", "p99", "max"]) say(shown.words[name], `${name} ${span(us[name] / 1000)}`);
+    say(shown.words.period, `every ${span(layer.period_ms)}`);
+    say(shown.words.overruns, layer.overruns > 0 ? `${layer.overruns} overrun${layer.overruns === 1 ? "" : "s"}` : "");
     const now = JSON.stringify([axis, layer.histogram, us]);
     if (now === shown.drawn) return;
     shown.drawn = now;

@@ -60,11 +60,14 @@ function connected() {
   lost.hidden = true;
 }
 
-function disconnected() {
+function disconnected(fault) {
+  if (lost.hidden) console.error(fault);
   document.body.dataset.connected = "false";
-  const old = heard === null ? "" : ` What you see is ${span(Math.round((performance.now() - heard) / 1000) * 1000)} old.`;
-  say(lost, `The daemon does not answer.${old}`);
+  const seconds = heard === null ? 0 : Math.round((performance.now() - heard) / 1000);
+  say(document.getElementById("lost-age"), seconds > 0 ? `What you see is ${span(seconds * 1000)} old.` : "");
   lost.hidden = false;
+  // Whether the body is halted is not known any longer, whatever was heard last.
+  showHalt(undefined);
 }
 
 async function beat() {
@@ -83,8 +86,7 @@ async function beat() {
     show(showLatency, state.layers);
     show(showEvents, state.events);
   } catch (fault) {
-    console.error(fault);
-    disconnected();
+    disconnected(fault);
   }
 }
 

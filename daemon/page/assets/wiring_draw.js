@@ -97,13 +97,19 @@ function circle(branch) {
     tabindex: 0, role: "img",
   });
   const constant = span(tap.time_constant_ms);
+  // A suppressor has its time left of where the tap comes from, an inhibitor on the other side: an
+  // inhibitor and a suppressor on one wire stand so close that they would share the place.
   const fromBelow = branch.points[branch.points.length - 1][1] > cy;
+  const [under, over] = [cy + CIRCLE + 10, cy - CIRCLE - 3];
+  const beside = tap.kind === "inhibit"
+    ? { x: cx, y: fromBelow ? over : under, "text-anchor": "middle" }
+    : { x: cx - CIRCLE + 4, y: fromBelow ? under : over, "text-anchor": "end" };
   group.append(
     make("title", {}),
     make("circle", { class: "disc", cx, cy, r: CIRCLE }),
     make("circle", { class: "left", cx, cy, r: CIRCLE, pathLength: 100, transform: `rotate(-90 ${cx} ${cy})` }),
     make("text", { class: "letter", x: cx, y: cy + 4, "text-anchor": "middle" }, letter),
-    make("text", { class: "constant", x: cx, y: fromBelow ? cy - CIRCLE - 4 : cy + CIRCLE + 11, "text-anchor": "middle" }, constant),
+    make("text", { class: "constant", ...beside }, constant),
   );
   return group;
 }

@@ -29,7 +29,7 @@ function measure(node) {
     node.height = 26;
     return;
   }
-  const longest = (ports) => Math.max(0, ...ports.map((port) => port.length)) * 5.3;
+  const longest = (ports) => Math.max(0, ...ports.map((port) => port.length)) * 5.9;
   node.width = Math.ceil(Math.max(84, node.name.length * 7.6 + 22, longest(node.inputs) + longest(node.outputs) + 26));
   node.height = TITLE + Math.max(1, node.inputs.length, node.outputs.length) * PORT + 4;
 }

@@ -60,10 +60,15 @@ function remember(state, time) {
   trail = trail.filter((point) => time - point.time < TRAIL_S);
   const ranges = listed(state.sonar?.ranges_m);
   const newest = pings[pings.length - 1];
-  if (ranges.length > 0 && (!newest || String(newest.ranges) !== String(ranges))) {
+  if (ranges.length > 0 && (!newest || differ(newest.ranges, ranges))) {
     pings.push({ ranges, x: robot.x, y: robot.y, heading: robot.heading ?? 0, time });
   }
   pings = pings.filter((ping, index) => index === pings.length - 1 || time - ping.time < ECHO_S);
+}
+
+/** Whether two rings of ranges are two pings: no noise is as small as half a millimetre all round. */
+function differ(before, now) {
+  return before.length !== now.length || now.some((range, spoke) => Math.abs(range - before[spoke]) > 5e-4);
 }
 
 function redraw() {
@@ -108,19 +113,23 @@ function drawFloor(pen, pixel) {
     pen.stroke();
     pen.restore();
     const size = 9.5 * pixel;
-    if (box.name && Math.max(box.w, box.h) > box.name.length * 0.55 * size) label(pen, box.x, box.y, size, box.name);
+    const along = box.w >= box.h ? 0 : Math.PI / 2;
+    if (box.name && Math.max(box.w, box.h) > box.name.length * 0.6 * size) label(pen, box, (box.heading ?? 0) + along, size);
   }
 }
 
-function label(pen, x, y, size, text) {
+/** Writes the name of a box along its longer side, never upside down. */
+function label(pen, box, angle, size) {
+  const upright = Math.atan(Math.tan(angle));
   pen.save();
-  pen.translate(x, y);
+  pen.translate(box.x, box.y);
+  pen.rotate(Math.abs(upright) < 1e-6 ? 0 : upright);
   pen.scale(size / 10, -size / 10);
   pen.font = "10px system-ui, sans-serif";
   pen.textAlign = "center";
   pen.textBaseline = "middle";
   pen.fillStyle = colours.quiet;
-  pen.fillText(text, 0, 0);
+  pen.fillText(box.name, 0, 0);
   pen.restore();
 }
 
@@ -153,6 +162,11 @@ function drawTrail(pen, pixel, time, robot) {
 
 /** Reading 0 looks straight ahead; the others follow counterclockwise, evenly spread. */
 function drawSonar(pen, pixel, time, max) {
+  const [x0, y0, x1, y1] = bounds;
+  pen.save();
+  pen.beginPath();
+  pen.rect(x0, y0, x1 - x0, y1 - y0);
+  pen.clip();
   pings.forEach((ping, index) => {
     const newest = index === pings.length - 1;
     const fade = Math.max(newest ? 0.35 : 0, 1 - (time - ping.time) / ECHO_S);
@@ -178,7 +192,7 @@ function drawSonar(pen, pixel, time, max) {
       pen.stroke();
     });
   });
-  pen.globalAlpha = 1;
+  pen.restore();
 }
 
 function drawPerson(pen, pixel, person) {

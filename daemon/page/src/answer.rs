@@ -29,13 +29,21 @@ pub(crate) struct Answer {
 impl Answer {
     /// A JSON text.
     pub(crate) fn json(text: String) -> Self {
-        Self { status: "200 OK", media: "application/json", text: text.into() }
+        Self {
+            status: "200 OK",
+            media: "application/json",
+            text: text.into(),
+        }
     }
 
     /// A refusal: `{"error": why}`.
     pub(crate) fn refusal(status: &'static str, why: &str) -> Self {
         let text = format!("{{\"error\":{}}}", quoted(why));
-        Self { status, media: "application/json", text: text.into() }
+        Self {
+            status,
+            media: "application/json",
+            text: text.into(),
+        }
     }
 
     /// Writes the answer and closes the connection.

@@ -14,7 +14,11 @@ const SCRIPT: &str = "text/javascript; charset=utf-8";
 
 macro_rules! asset {
     ($path:literal, $media:expr, $file:literal) => {
-        Asset { path: $path, media: $media, text: include_str!(concat!("../assets/", $file)) }
+        Asset {
+            path: $path,
+            media: $media,
+            text: include_str!(concat!("../assets/", $file)),
+        }
     };
 }
 

@@ -64,7 +64,13 @@ mod tests {
 
     #[test]
     fn loopback_names_pass_with_any_port() {
-        for host in ["localhost", "LocalHost:1", "127.0.0.1:8086", "[::1]:65535", "[::1]"] {
+        for host in [
+            "localhost",
+            "LocalHost:1",
+            "127.0.0.1:8086",
+            "[::1]:65535",
+            "[::1]",
+        ] {
             assert_eq!(refusal(&head("GET", Some(host), None)), None, "{host}");
         }
     }
@@ -72,8 +78,15 @@ mod tests {
     #[test]
     fn foreign_and_malformed_hosts_are_refused() {
         let foreign = [
-            "example.org", "127.0.0.1.example.org", "localhost:", "localhost:99999",
-            "localhost:+1", "127.0.0.1@example.org", "", "0.0.0.0:80", "é",
+            "example.org",
+            "127.0.0.1.example.org",
+            "localhost:",
+            "localhost:99999",
+            "localhost:+1",
+            "127.0.0.1@example.org",
+            "",
+            "0.0.0.0:80",
+            "é",
         ];
         for host in foreign {
             assert!(refusal(&head("GET", Some(host), None)).is_some(), "{host}");
@@ -85,7 +98,12 @@ mod tests {
     fn the_origin_is_the_page_itself() {
         let host = Some("127.0.0.1:8086");
         assert_eq!(refusal(&head("POST", host, Some("http://127.0.0.1:8086"))), None);
-        for origin in ["null", "http://127.0.0.1:3000", "https://127.0.0.1:8086", "http://evil"] {
+        for origin in [
+            "null",
+            "http://127.0.0.1:3000",
+            "https://127.0.0.1:8086",
+            "http://evil",
+        ] {
             assert!(refusal(&head("POST", host, Some(origin))).is_some(), "{origin}");
         }
     }

@@ -54,7 +54,9 @@ pub(crate) enum Unread {
 
 /// Reads one request from `stream`, body included; the body is dropped.
 pub(crate) fn read(stream: &mut TcpStream) -> Result<Head, Unread> {
-    stream.set_read_timeout(Some(WAIT_MAX)).map_err(|_| Unread::Gone)?;
+    stream
+        .set_read_timeout(Some(WAIT_MAX))
+        .map_err(|_| Unread::Gone)?;
     let mut reads = READS_MAX;
     let mut bytes = [0_u8; HEAD_BYTES_MAX];
     let mut filled = 0;

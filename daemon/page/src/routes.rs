@@ -24,9 +24,11 @@ pub(crate) fn answer(head: &Head, source: &dyn Source) -> Answer {
         (_, "/api/plan" | "/api/state") => method("use GET"),
         (_, "/api/halt" | "/api/reset") => method("use POST"),
         ("GET", path) => match assets::find(path) {
-            Some(asset) => {
-                Answer { status: "200 OK", media: asset.media, text: asset.text.into() }
-            }
+            Some(asset) => Answer {
+                status: "200 OK",
+                media: asset.media,
+                text: asset.text.into(),
+            },
             None => Answer::refusal("404 Not Found", "there is nothing here"),
         },
         _ => method("use GET"),
@@ -42,9 +44,7 @@ pub(crate) fn answer_unread(unread: &Unread) -> Option<Answer> {
             let status = "431 Request Header Fields Too Large";
             Some(Answer::refusal(status, "the request is too large"))
         }
-        Unread::BodyTooLarge => {
-            Some(Answer::refusal("413 Content Too Large", "the body is too large"))
-        }
+        Unread::BodyTooLarge => Some(Answer::refusal("413 Content Too Large", "the body is too large")),
     }
 }
 

@@ -31,7 +31,11 @@ impl Source for Counted {
 
     fn reset(&self) -> Result<(), String> {
         self.resets.fetch_add(1, Ordering::SeqCst);
-        self.refusal.lock().expect("no test panics with it").clone().map_or(Ok(()), Err)
+        self.refusal
+            .lock()
+            .expect("no test panics with it")
+            .clone()
+            .map_or(Ok(()), Err)
     }
 }
 
@@ -48,7 +52,9 @@ fn start() -> (Server, Arc<Counted>) {
 /// Sends `bytes` and reads the whole answer.
 fn talk(server: &Server, bytes: &[u8]) -> String {
     let mut stream = TcpStream::connect(server.address()).expect("the server listens");
-    stream.set_read_timeout(Some(Duration::from_secs(10))).expect("a timeout");
+    stream
+        .set_read_timeout(Some(Duration::from_secs(10)))
+        .expect("a timeout");
     stream.write_all(bytes).expect("the server reads");
     let mut answer = String::new();
     stream.read_to_string(&mut answer).expect("an answer in full");
@@ -56,7 +62,10 @@ fn talk(server: &Server, bytes: &[u8]) -> String {
 }
 
 fn ask(server: &Server, method: &str, path: &str, more: &str) -> String {
-    let request = format!("{method} {path} HTTP/1.1\r\nHost: {}\r\n{more}\r\n", server.address());
+    let request = format!(
+        "{method} {path} HTTP/1.1\r\nHost: {}\r\n{more}\r\n",
+        server.address()
+    );
     talk(server, request.as_bytes())
 }
 
@@ -93,7 +102,10 @@ fn the_page_and_all_it_refers_to_is_served() {
 fn referred(text: &str, marks: &[&str]) -> Vec<String> {
     let after = marks.iter().flat_map(|mark| text.split(mark).skip(1));
     let paths = after.filter_map(|rest| rest.split('"').next());
-    paths.filter(|path| path.starts_with('/')).map(str::to_owned).collect()
+    paths
+        .filter(|path| path.starts_with('/'))
+        .map(str::to_owned)
+        .collect()
 }
 
 #[test]
@@ -112,13 +124,19 @@ fn plan_and_state_pass_through_unread() {
     let plan = ask(&server, "GET", "/api/plan", "");
     assert!(plan.contains("Content-Type: application/json"));
     assert_eq!(body(&plan), "{\"creature\":\"allen\"}");
-    assert_eq!(body(&ask(&server, "GET", "/api/state?now", "")), "{\"time_s\":1.5}");
+    assert_eq!(
+        body(&ask(&server, "GET", "/api/state?now", "")),
+        "{\"time_s\":1.5}"
+    );
 }
 
 #[test]
 fn the_buttons_lead_to_the_source() {
     let (server, source) = start();
-    assert_eq!(status(&ask(&server, "POST", "/api/halt", "Content-Length: 0\r\n")), "200");
+    assert_eq!(
+        status(&ask(&server, "POST", "/api/halt", "Content-Length: 0\r\n")),
+        "200"
+    );
     assert_eq!(source.halts.load(Ordering::SeqCst), 1);
     assert_eq!(status(&ask(&server, "POST", "/api/reset", "")), "200");
     *source.refusal.lock().expect("no test panics with it") = Some("the \"bumper\" is pressed".into());
@@ -149,7 +167,10 @@ fn a_foreign_page_is_refused() {
     assert_eq!(status(&forged), "403");
     let two_hosts = ask(&server, "POST", "/api/reset", "Host: evil.example\r\n");
     assert_eq!(status(&two_hosts), "400");
-    assert_eq!(source.halts.load(Ordering::SeqCst) + source.resets.load(Ordering::SeqCst), 0);
+    assert_eq!(
+        source.halts.load(Ordering::SeqCst) + source.resets.load(Ordering::SeqCst),
+        0
+    );
     let own = format!("Origin: http://{}\r\n", server.address());
     assert_eq!(status(&ask(&server, "POST", "/api/reset", &own)), "200");
 }
@@ -171,10 +192,27 @@ fn oversized_requests_are_refused() {
 #[test]
 fn nonsense_is_answered_or_dropped() {
     let (server, _) = start();
-    assert_eq!(status(&talk(&server, b"\x16\x03\x01\x02\x00\x01\x00\r\n\r\n")), "400");
-    assert_eq!(status(&talk(&server, b"GET / HTTP/1.1\r\nHost: \xff\xfe\r\n\r\n")), "403");
-    assert_eq!(status(&ask(&server, "POST", "/api/halt", "Content-Length: -1\r\n")), "400");
-    assert_eq!(status(&ask(&server, "POST", "/api/halt", "Transfer-Encoding: chunked\r\n")), "400");
+    assert_eq!(
+        status(&talk(&server, b"\x16\x03\x01\x02\x00\x01\x00\r\n\r\n")),
+        "400"
+    );
+    assert_eq!(
+        status(&talk(&server, b"GET / HTTP/1.1\r\nHost: \xff\xfe\r\n\r\n")),
+        "403"
+    );
+    assert_eq!(
+        status(&ask(&server, "POST", "/api/halt", "Content-Length: -1\r\n")),
+        "400"
+    );
+    assert_eq!(
+        status(&ask(
+            &server,
+            "POST",
+            "/api/halt",
+            "Transfer-Encoding: chunked\r\n"
+        )),
+        "400"
+    );
     assert_eq!(talk(&server, b"GET / HTT"), "", "an unfinished request times out");
     assert_eq!(status(&ask(&server, "GET", "/", "")), "200");
 }
@@ -197,7 +235,10 @@ fn a_taken_port_says_what_to_change() {
     assert!(matches!(refused, ServeError::PortTaken { address } if address == taken));
     let text = refused.to_string();
     assert!(text.contains(&format!("port {}", taken.port())), "{text}");
-    assert!(text.contains("--page-port N") && text.contains("0 takes any free one"), "{text}");
+    assert!(
+        text.contains("--page-port N") && text.contains("0 takes any free one"),
+        "{text}"
+    );
 }
 
 #[test]
@@ -213,7 +254,11 @@ fn stopping_joins_every_thread_and_frees_the_port() {
     let address = server.address();
     let idle = TcpStream::connect(address).expect("the server listens");
     server.stop();
-    assert_eq!(Arc::strong_count(&source), 1, "no thread holds the source any longer");
+    assert_eq!(
+        Arc::strong_count(&source),
+        1,
+        "no thread holds the source any longer"
+    );
     drop(idle);
     let again = serve(address, source.clone()).expect("the port is free again");
     drop(again);

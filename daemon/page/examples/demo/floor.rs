@@ -63,8 +63,18 @@ pub(crate) fn range(x: f64, y: f64, angle: f64, people: &[(f64, f64)], max_m: f6
     WALLS.into_iter().for_each(&mut hit);
     for (_, cx, cy, w, h, heading) in BOXES {
         let (c, s) = (f64::cos(heading), f64::sin(heading));
-        let corner = |a: f64, b: f64| (cx + a * w / 2.0 * c - b * h / 2.0 * s, cy + a * w / 2.0 * s + b * h / 2.0 * c);
-        let corners = [corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0)];
+        let corner = |a: f64, b: f64| {
+            (
+                cx + a * w / 2.0 * c - b * h / 2.0 * s,
+                cy + a * w / 2.0 * s + b * h / 2.0 * c,
+            )
+        };
+        let corners = [
+            corner(-1.0, -1.0),
+            corner(1.0, -1.0),
+            corner(1.0, 1.0),
+            corner(-1.0, 1.0),
+        ];
         for index in 0..4 {
             let (from, to) = (corners[index], corners[(index + 1) % 4]);
             hit([from.0, from.1, to.0, to.1]);

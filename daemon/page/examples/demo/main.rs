@@ -35,7 +35,11 @@ impl Demo {
     }
 
     fn halt_state(&self, buttons: &Buttons, time_s: f64) -> Value {
-        let causes: Vec<&str> = if buttons.halted { vec![buttons.cause] } else { Vec::new() };
+        let causes: Vec<&str> = if buttons.halted {
+            vec![buttons.cause]
+        } else {
+            Vec::new()
+        };
         json!({
             "halted": buttons.halted, "causes": causes,
             "since_s": buttons.halted_at_s, "latched": buttons.halted && buttons.cause == "operator",
@@ -55,8 +59,15 @@ impl Source for Demo {
 
     fn state(&self) -> String {
         let time_s = self.time_s();
-        let Ok(buttons) = self.buttons.lock() else { return "{}".to_owned() };
-        let stood_s = buttons.stood_s + if buttons.halted { time_s - buttons.halted_at_s } else { 0.0 };
+        let Ok(buttons) = self.buttons.lock() else {
+            return "{}".to_owned();
+        };
+        let stood_s = buttons.stood_s
+            + if buttons.halted {
+                time_s - buttons.halted_at_s
+            } else {
+                0.0
+            };
         let mut state = moving::state(time_s, time_s - stood_s, buttons.halted);
         if let Some(fields) = state.as_object_mut() {
             fields.insert("halt".to_owned(), self.halt_state(&buttons, time_s));
@@ -77,7 +88,9 @@ impl Source for Demo {
 
     fn reset(&self) -> Result<(), String> {
         let time_s = self.time_s();
-        let Ok(mut buttons) = self.buttons.lock() else { return Err("broken".to_owned()) };
+        let Ok(mut buttons) = self.buttons.lock() else {
+            return Err("broken".to_owned());
+        };
         buttons.resets += 1;
         if !buttons.halted {
             return Err("the creature is not halted".to_owned());

@@ -8,8 +8,18 @@ use crate::floor;
 
 /// The round, in metres.
 const ROUND: [(f64, f64); 12] = [
-    (1.2, 3.7), (5.2, 3.6), (6.1, 4.6), (6.6, 5.7), (7.6, 5.9), (6.4, 5.3), (6.0, 3.8), (8.6, 3.0),
-    (10.8, 2.6), (8.4, 3.4), (5.4, 2.2), (4.8, 3.7),
+    (1.2, 3.7),
+    (5.2, 3.6),
+    (6.1, 4.6),
+    (6.6, 5.7),
+    (7.6, 5.9),
+    (6.4, 5.3),
+    (6.0, 3.8),
+    (8.6, 3.0),
+    (10.8, 2.6),
+    (8.4, 3.4),
+    (5.4, 2.2),
+    (4.8, 3.7),
 ];
 const SPEED_M_S: f64 = 0.45;
 const SONAR_MAX_M: f64 = 5.0;
@@ -20,7 +30,11 @@ pub(crate) fn state(time_s: f64, driven_s: f64, halted: bool) -> Value {
     let people = people(time_s);
     let places: Vec<(f64, f64)> = people.iter().map(|person| (person.0, person.1)).collect();
     let ping_s = time_s.floor();
-    let ping_driven_s = if halted { driven_s } else { driven_s - (time_s - ping_s) };
+    let ping_driven_s = if halted {
+        driven_s
+    } else {
+        driven_s - (time_s - ping_s)
+    };
     let (px, py, ph) = on_round(ping_driven_s.max(0.0) * SPEED_M_S);
     let ranges: Vec<f64> = (0..12)
         .map(|index| {
@@ -28,7 +42,11 @@ pub(crate) fn state(time_s: f64, driven_s: f64, halted: bool) -> Value {
             let noise = 0.02 * (ping_s * 12.9898 + f64::from(index) * 78.233).sin();
             let missed = (ping_s * 7.0 + f64::from(index) * 5.0) % 11.0 < 1.0;
             let seen = floor::range(px, py, angle, &places, SONAR_MAX_M);
-            if missed { SONAR_MAX_M } else { (seen + noise).clamp(0.05, SONAR_MAX_M) }
+            if missed {
+                SONAR_MAX_M
+            } else {
+                (seen + noise).clamp(0.05, SONAR_MAX_M)
+            }
         })
         .collect();
     let people: Vec<Value> = people
@@ -57,7 +75,11 @@ fn on_round(metres: f64) -> (f64, f64, f64) {
         if left <= length {
             let part = left / length;
             let heading = (to.1 - from.1).atan2(to.0 - from.0);
-            return (from.0 + part * (to.0 - from.0), from.1 + part * (to.1 - from.1), heading);
+            return (
+                from.0 + part * (to.0 - from.0),
+                from.1 + part * (to.1 - from.1),
+                heading,
+            );
         }
         left -= length;
     }
@@ -66,11 +88,20 @@ fn on_round(metres: f64) -> (f64, f64, f64) {
 
 fn people(time_s: f64) -> Vec<(f64, f64, f64, &'static str)> {
     let swing = (time_s * 0.25).sin();
-    let away = if (time_s * 0.25).cos() > 0.0 { 0.0 } else { TAU / 2.0 };
+    let away = if (time_s * 0.25).cos() > 0.0 {
+        0.0
+    } else {
+        TAU / 2.0
+    };
     vec![
         (7.5 + 3.2 * swing, 3.9, away, "walker"),
         (1.6, 5.7, -0.8, "walker"),
-        (8.2 + 0.8 * (time_s * 0.5).cos(), 1.2 + 0.5 * (time_s * 0.5).sin(), time_s * 0.5, "attacker"),
+        (
+            8.2 + 0.8 * (time_s * 0.5).cos(),
+            1.2 + 0.5 * (time_s * 0.5).sin(),
+            time_s * 0.5,
+            "attacker",
+        ),
     ]
 }
 
@@ -84,11 +115,26 @@ fn wires(time_s: f64, heading: f64, ranges: &[f64], halted: bool) -> Vec<Value> 
     };
     vec![
         every("body.sonar", "echoes", json!(ranges), 1.0),
-        every("body.odometry", "pose", json!([heading.cos(), heading.sin(), heading]), 20.0),
+        every(
+            "body.odometry",
+            "pose",
+            json!([heading.cos(), heading.sin(), heading]),
+            20.0,
+        ),
         every("sonar.map", "map", json!(ranges), 1.0),
         every("collide.halt", "bit", json!(near < 0.3), 1.0),
-        every("feelforce.force", "force", json!([0.3 * heading.cos(), -0.2]), 1.0),
-        every("runaway.heading", "heading", json!({"turn_rad": -0.4, "metres": 0.5}), 0.4),
+        every(
+            "feelforce.force",
+            "force",
+            json!([0.3 * heading.cos(), -0.2]),
+            1.0,
+        ),
+        every(
+            "runaway.heading",
+            "heading",
+            json!({"turn_rad": -0.4, "metres": 0.5}),
+            0.4,
+        ),
         every("wander.heading", "heading", json!(heading + 0.5), 0.1),
         every("avoid.heading", "heading", json!(heading), 1.0),
         every("turn.turn", "speed", json!(0.2 * time_s.sin()), 10.0),
@@ -124,7 +170,11 @@ fn layers(time_s: f64) -> Vec<Value> {
                 let upper_us = 2.0 * 1.3_f64.powi(index);
                 let away = (upper_us / middle_us).ln();
                 let bulk = (beats * 0.35 * (-away * away * 3.0).exp()).floor();
-                let tail = if away > 0.0 && away < 2.6 { (beats * 0.004 / (1.0 + away * away)).floor() } else { 0.0 };
+                let tail = if away > 0.0 && away < 2.6 {
+                    (beats * 0.004 / (1.0 + away * away)).floor()
+                } else {
+                    0.0
+                };
                 ((upper_us * 10.0).round() / 10.0, bulk + tail)
             })
             .collect();
