@@ -35,10 +35,11 @@ export function showHalt(halt) {
     return;
   }
   const since = typeof halt.since_s === "number" ? ` since ${moment(halt.since_s)}` : "";
+  // A refusal stays in sight until the body's state has changed.
+  if (banner.dataset.halted !== undefined && banner.dataset.halted !== String(halted)) answer.hidden = true;
   banner.dataset.halted = String(halted);
   say(word, halted ? "HALTED" : "Running");
   const reasons = listed(halt.causes).join(", ");
   const latched = halt.latched ? " – stays until reset" : "";
   say(causes, halted ? `${reasons || "no cause given"}${since}${latched}` : "");
-  if (!halted) answer.hidden = true;
 }
