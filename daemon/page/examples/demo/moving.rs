@@ -28,8 +28,11 @@ const SONAR_MAX_M: f64 = 5.0;
 pub(crate) fn state(time_s: f64, driven_s: f64, halted: bool) -> Value {
     let (x, y, heading) = on_round(driven_s * SPEED_M_S);
     let people = people(time_s);
-    let places: Vec<(f64, f64)> = people.iter().map(|person| (person.0, person.1)).collect();
     let ping_s = time_s.floor();
+    let places: Vec<(f64, f64)> = self::people(ping_s)
+        .iter()
+        .map(|person| (person.0, person.1))
+        .collect();
     let ping_driven_s = if halted {
         driven_s
     } else {
