@@ -7,10 +7,10 @@
 //!   existing wire ──► (S level 1) ──► (S level 1, declared later) ──► (S level 2) ──► register ──► module
 //! ```
 
-use super::page::Reader;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
+use super::page::Reader;
 use crate::clock::{Span, Time};
 use crate::message::{Kind, WORDS_MAX, Words};
 use crate::tap::{self, Window};
@@ -101,7 +101,6 @@ impl Joined {
             words: [0.0; WORDS_MAX],
             fresh: false,
             leaving: false,
-            counts: TapCounts::default(),
         }
     }
 
@@ -143,9 +142,8 @@ impl Joined {
 
     pub(super) fn state(&self) -> TapState {
         TapState {
-            id: self.end.id,
             window: self.window,
-            counts: self.counts,
+            counts: self.end.gauge.counts(),
         }
     }
 
