@@ -4,7 +4,7 @@
 //! ends when the gap has opened to a centimetre, so that resting against something counts once.
 
 use crate::discs::Disc;
-use crate::plane::Vec2;
+use crate::robot::Robot;
 use crate::space::Space;
 use serde::Serialize;
 use std::collections::VecDeque;
@@ -67,27 +67,27 @@ impl Touch {
         }
     }
 
-    /// Looks at everything near the robot once a step. `velocity` is the robot's own, m/s, and
-    /// `discs[0]` is the robot, followed by the people with their `names`.
+    /// Looks at everything near the robot once a step. `discs[0]` is the robot's, followed by
+    /// those of the people with their `names`.
     pub(crate) fn look(
         &mut self,
         time_s: f64,
-        velocity: Vec2,
+        robot: &Robot,
         space: &Space,
         discs: &[Disc],
         names: &[Arc<str>],
     ) {
         self.step += 1;
-        let robot = discs[0];
-        space.each_near(robot.at, robot.radius + PART_M, |near| {
-            let approach = -velocity.dot(near.away);
-            let gap = near.distance - robot.radius;
+        let rim = discs[0];
+        space.each_near(rim.at, rim.radius + PART_M, |near| {
+            let approach = robot.approach(near.away * -1.0);
+            let gap = near.distance - rim.radius;
             self.one(near.thing, gap, time_s, approach, || space.name(near.thing));
         });
         for (person, disc) in discs[1..].iter().enumerate() {
-            let gap = robot.gap(disc);
+            let gap = rim.gap(disc);
             if gap <= PART_M {
-                let approach = velocity.dot((disc.at - robot.at).unit());
+                let approach = robot.approach((disc.at - rim.at).unit());
                 self.one(self.people_from + person, gap, time_s, approach, || {
                     names[person].clone()
                 });

@@ -131,13 +131,8 @@ impl Office {
             let at = self.people[index].step(&around, &mut self.people_noise);
             self.discs[index + 1].at = at;
         }
-        self.touch.look(
-            self.time_s,
-            self.robot.velocity(),
-            &self.space,
-            &self.discs,
-            &self.names,
-        );
+        self.touch
+            .look(self.time_s, &self.robot, &self.space, &self.discs, &self.names);
     }
 
     /// Fires the ring: twelve ranges, m from the robot's rim. Index i looks i × 30 degrees

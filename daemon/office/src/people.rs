@@ -44,6 +44,9 @@ const ASIDE_M: f64 = 0.6;
 const HEADWAY: (f64, f64) = (3.0, 0.25);
 /// How often an attacker looks where the robot is, s.
 const LOOK_S: f64 = 0.5;
+/// Radius that must be free for an attacker to walk straight at the robot, m: a little less than the
+/// robot's, or a robot against a wall could hide there.
+const APPROACH_RADIUS_M: f64 = 0.18;
 /// Probability that a walker on the way to a goal does not notice the robot: reading on the move.
 const CARELESS: f64 = 0.15;
 
@@ -263,8 +266,7 @@ impl Person {
 
     /// The way point by which an attacker gets at the robot; none when the way is straight.
     fn look(&self, at: Vec2, robot: Vec2, around: &Surroundings<'_>) -> Option<usize> {
-        // The swept disc is the robot's: it can reach wherever the robot stands.
-        if around.space.passable(at, robot, 0.18) {
+        if around.space.passable(at, robot, APPROACH_RADIUS_M) {
             return None;
         }
         let near_robot = around.ways.join(around.space, robot, None)?;

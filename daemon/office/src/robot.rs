@@ -19,6 +19,8 @@ pub(crate) struct Robot {
     forward: f64,
     /// What the wheels do now: rad/s.
     turn: f64,
+    /// How the base really moved in this step and in the one before, m/s.
+    moved: [Vec2; 2],
     /// m along the true path.
     pub(crate) travelled: f64,
     believed: Vec2,
@@ -59,6 +61,7 @@ impl Robot {
             heading: wrapped(start.2),
             forward: 0.0,
             turn: 0.0,
+            moved: [Vec2::default(); 2],
             travelled: 0.0,
             believed: at,
             scale,
@@ -91,9 +94,11 @@ impl Robot {
         }
     }
 
-    /// m/s, as the wheels drive the base.
-    pub(crate) fn velocity(&self) -> Vec2 {
-        Vec2::at_angle(self.heading) * self.forward
+    /// The base's own speed in `direction`, m/s, at the moment of a contact in this step. What it
+    /// touched has already cut this step's move short, so the step before counts too; wheels that
+    /// slip under a base held fast do not count.
+    pub(crate) fn approach(&self, direction: Vec2) -> f64 {
+        self.moved[0].dot(direction).max(self.moved[1].dot(direction))
     }
 
     /// Brings the wheels nearer to the command, turns, and says where the base would like to be.
@@ -119,6 +124,7 @@ impl Robot {
     /// Takes the place where the base came to rest this step, and lets the odometry count.
     pub(crate) fn settle(&mut self, dt_s: f64, now: Vec2) {
         self.travelled += (now - self.at).length();
+        self.moved = [(now - self.at) * (1.0 / dt_s), self.moved[0]];
         self.at = now;
         let model = &self.model;
         let (along, across, wander) = (self.noise.gauss(), self.noise.gauss(), self.noise.gauss());

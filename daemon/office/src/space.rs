@@ -98,7 +98,8 @@ impl Space {
             .iter()
             .map(|(handle, c)| (handle.into_raw_parts().0 as usize, c.compute_aabb()));
         space.tree = Bvh::from_iter(BvhBuildStrategy::default(), boxes);
-        // A corner buried in another block echoes nothing.
+        // A corner buried in another block echoes nothing. One where two blocks meet stays: inner
+        // corners send sound back where it came from.
         corners.retain(|&corner| {
             space
                 .nearest(corner, 0.0)

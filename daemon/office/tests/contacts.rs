@@ -137,3 +137,19 @@ fn clearance_is_measured_from_the_rim() {
     );
     assert_eq!(office.distance_travelled_m(), 0.0);
 }
+
+#[test]
+fn wheels_that_slip_against_a_wall_cause_no_contact_with_a_passer_by() {
+    let mut office = empty((5.5, 3.0, 0.0));
+    run(&mut office, 3.0, AHEAD);
+    assert_eq!(office.contacts().caused, 1, "the wall");
+    // Somebody comes along the wall from the north, into the side of the pushing robot's front.
+    office.place_person(5.7, 5.0, 0.0, -0.5);
+    run(&mut office, 6.0, AHEAD);
+    assert_eq!(
+        (office.contacts().all, office.contacts().caused),
+        (2, 1),
+        "{:?}",
+        office.contacts().recent
+    );
+}

@@ -80,7 +80,7 @@ fn every_error_says_where() {
         (
             "doors = [[2.0, 1.0]]",
             "doors = []",
-            (24, 6),
+            (23, 6),
             "partition is in the way",
         ),
         (
@@ -105,7 +105,7 @@ fn every_error_says_where() {
         (
             "name = \"east\"",
             "name = \"west\"",
-            (28, 8),
+            (27, 8),
             "a second place named",
         ),
         (
