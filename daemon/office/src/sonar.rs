@@ -12,7 +12,7 @@ use crate::plane::Vec2;
 use crate::space::Space;
 use core::f64::consts::TAU;
 
-/// Transducers in the ring, 30 degrees apart (Brooks 1986).
+/// Transducers in the ring, 30 degrees apart (Brooks 1991, "Intelligence without representation", section 6.2).
 pub const SONARS: usize = 12;
 /// Rays that sample one cone: 5 degrees apart in a cone of 30.
 const RAYS: usize = 7;
@@ -20,9 +20,10 @@ const RAYS: usize = 7;
 /// sight of its own faces.
 const HAIR_M: f64 = 0.002;
 
-/// How well the ring measures. The figures for range are those of the Polaroid 6500 ranging
-/// module's data sheet (6 inches to 35 feet, about 1 percent); the reflection angle is the one of
-/// Brooks's own simulator (Brooks 1986); the others are our choice.
+/// How well the ring measures. Ranges are of the size given for the Polaroid 6500 ranging module of
+/// the time (6 inches to 35 feet, about 1 percent); that sound is mirrored at less than thirty
+/// degrees to a surface and returns by several reflections is from Brooks 1991, section 6.2. The
+/// other figures are our choice.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SonarModel {
     /// Nearest range that can be told, m; anything nearer reads this. 6 inches.
