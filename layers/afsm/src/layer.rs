@@ -11,13 +11,11 @@
 use std::ops::Range;
 
 use ipc::clock::Time;
-use ipc::message::Pulse;
 use ipc::wire::{Outlet, Register, TapEnd};
 use rtrb::{Consumer, Producer};
 
 use crate::kind::ModuleKind;
 use crate::module::{Beat, Module};
-use crate::port::In;
 
 /// A change to a running layer's taps, made by a thread that is not real-time.
 #[derive(Debug)]
@@ -200,13 +198,11 @@ impl RunningLayer {
 
     fn obey(&mut self, command: Command) {
         let refused = match command {
-            Command::Suppress(input, end) => match self.registers.get_mut(input) {
-                Some(register) => {
-                    self.reset_joined(input);
-                    register_suppress(&mut self.registers[input], end)
-                }
-                None => Err(end),
-            },
+            Command::Suppress(input, end) if input < self.registers.len() => {
+                self.connect_reset(input);
+                self.registers[input].suppress(end)
+            }
+            Command::Suppress(_, end) => Err(end),
             Command::Inhibit(output, end) => match self.outlets.get_mut(output) {
                 Some(outlet) => outlet.inhibit(end),
                 None => Err(end),
@@ -223,15 +219,11 @@ impl RunningLayer {
     }
 
     /// A tap on a reset line connects it.
-    fn reset_joined(&mut self, input: usize) {
+    fn connect_reset(&mut self, input: usize) {
         if let Some(seat) = self.seats.iter_mut().find(|s| s.inputs.end == input + 1) {
             seat.reset = true;
         }
     }
-}
-
-fn register_suppress(register: &mut Register, end: TapEnd) -> Result<(), TapEnd> {
-    register.suppress(end)
 }
 
 /// Hands a tap to the thread that may drop it. The ring has room for every tap there can be, so the tap is
@@ -241,6 +233,3 @@ fn give_back(returned: &mut Producer<TapEnd>, end: TapEnd) {
         std::mem::forget(end);
     }
 }
-
-/// The reset line as modules' tests may want to name it.
-pub const RESET_LINE: fn(&'static ipc::wiring::Declaration) -> In<Pulse> = |d| In::at(d.inputs.len());
