@@ -3,9 +3,16 @@
 //!
 //! Must never know a behaviour; layers come to it as checked wiring and boxes that step.
 
+pub mod alloc;
 pub mod body;
+pub mod control;
+pub mod events;
 pub mod executor;
 pub mod gate;
 pub mod machine;
 pub mod motor;
+pub mod plugs;
+pub mod running;
+pub mod status;
+pub mod view;
 pub mod virtual_run;

@@ -1,1 +1,160 @@
-fn main() {}
+//! `subsumed`: runs a creature.
+
+use std::net::SocketAddr;
+use std::path::PathBuf;
+use std::process::ExitCode;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+
+use clap::Parser;
+use daemon::control::{self, Control};
+use daemon::machine::{Machine, kinds};
+use daemon::running::{self, Running};
+use daemon::view::View;
+use ipc::wire::iceoryx::Domain;
+use ipc::wiring::creature::Creature;
+use ipc::wiring::directory::output_ports;
+use ipc::wiring::{Source, check};
+
+#[global_allocator]
+static ALLOCATOR: daemon::alloc::Counting = daemon::alloc::Counting;
+
+/// Runs a subsumption creature on real-time threads, with its wires in shared memory.
+#[derive(Parser, Debug)]
+#[command(version, after_help = "Examples:\n  \
+    subsumed                                the built-in creature Allen in its office\n  \
+    subsumed --creature mine.toml           a creature of your own\n  \
+    subsumed --headless --seconds 60        one minute, nothing to look at\n  \
+    subsumed --name jerry --page-port 0     a second instance beside the first\n\n\
+    Ctrl-C halts the body, then leaves.\n\
+    Status: 0 after a signal or --seconds; 1 when the host refuses; 2 for bad input.")]
+struct Options {
+    /// The creature file; without it, Allen
+    #[arg(long, value_name = "FILE")]
+    creature: Option<PathBuf>,
+    /// Name of this instance; the creature's own if not given
+    #[arg(long)]
+    name: Option<String>,
+    /// Port of the live page on 127.0.0.1; 0 for any that is free
+    #[arg(long, default_value_t = 4686, value_name = "N")]
+    page_port: u16,
+    /// No live page
+    #[arg(long)]
+    no_page: bool,
+    /// Nothing to look at: no page, and only warnings on the terminal
+    #[arg(long)]
+    headless: bool,
+    /// Leave after N seconds
+    #[arg(long, value_name = "N")]
+    seconds: Option<f64>,
+    /// Seed of everything random, instead of the creature file's
+    #[arg(long, value_name = "N")]
+    seed: Option<u64>,
+}
+
+fn main() -> ExitCode {
+    let options = Options::parse();
+    let creature = match load(&options) {
+        Ok(creature) => creature,
+        Err(message) => {
+            eprintln!("{message}");
+            return ExitCode::from(2);
+        }
+    };
+    match run(&options, creature) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(message) => {
+            eprintln!("subsumed: {message}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+/// Reads and checks the creature file.
+fn load(options: &Options) -> Result<Creature, String> {
+    let source = match &options.creature {
+        None => Source::new("allen.toml (built in)", allen::CREATURE),
+        Some(path) => {
+            let text = std::fs::read_to_string(path).map_err(|e| {
+                format!("{}: cannot be read: {e}; expected the path of a creature file (TOML)", path.display())
+            })?;
+            Source::new(path.display().to_string(), text)
+        }
+    };
+    let mut creature = check::creature(&source, &kinds()).map_err(|rejected| rejected.to_string())?;
+    creature.seed = options.seed.unwrap_or(creature.seed);
+    if let Some(name) = &options.name {
+        let sound = |c: char| c.is_ascii_alphanumeric() || c == '-' || c == '_';
+        if name.is_empty() || name.len() > 48 || !name.chars().all(sound) {
+            return Err(format!("--name {name:?}: expected 1 to 48 letters, digits, '-' or '_'"));
+        }
+        creature.name = name.clone();
+    }
+    if options.seconds.is_some_and(|s| !s.is_finite() || s <= 0.0) {
+        return Err("--seconds: expected a number of seconds above zero".into());
+    }
+    Ok(creature)
+}
+
+/// Runs the creature until a signal comes or the time is over.
+fn run(options: &Options, creature: Creature) -> Result<(), String> {
+    let leave = Arc::new(AtomicBool::new(false));
+    for signal in [signal_hook::consts::SIGTERM, signal_hook::consts::SIGINT] {
+        signal_hook::flag::register(signal, leave.clone()).map_err(|e| format!("signal {signal}: {e}"))?;
+    }
+    let name = creature.name.clone();
+    control::claim(&name).map_err(|e| e.to_string())?;
+    let domain = Domain::join(&name).map_err(|e| e.to_string())?;
+    let owned = domain.own(&name, output_ports(&creature).count()).map_err(|e| e.to_string())?;
+    let machine = Machine::new(creature, &kinds(), owned.page().clone(), None);
+    let running = running::start(&name, machine, owned, domain).map_err(|e| format!("starting threads: {e}"))?;
+    let control = Control::open(&name, running.shared.clone()).map_err(|e| format!("the control socket: {e}"));
+    let page = serve_page(options, &running);
+    let result = control.and_then(|control| page.map(|page| (control, page)));
+    let result = result.map(|(control, page)| {
+        if !options.headless {
+            introduce(&running, page.as_ref());
+        }
+        wait(options, &leave);
+        // Nobody is answered any more while the body comes to a halt.
+        drop((control, page));
+    });
+    running.shut_down();
+    result
+}
+
+fn serve_page(options: &Options, running: &Running) -> Result<Option<page::Server>, String> {
+    if options.no_page || options.headless {
+        return Ok(None);
+    }
+    let address = SocketAddr::from(([127, 0, 0, 1], options.page_port));
+    page::serve(address, Arc::new(View(running.shared.clone()))).map(Some).map_err(|e| e.to_string())
+}
+
+fn introduce(running: &Running, page: Option<&page::Server>) {
+    let shared = &running.shared;
+    if running.refusals.is_empty() {
+        println!("real time: memory is locked, threads run under SCHED_FIFO");
+    } else {
+        println!("BEST EFFORT: the host does not grant real time");
+        running.refusals.iter().for_each(|r| println!("  {r}"));
+    }
+    let layers: Vec<String> =
+        shared.creature.layers.iter().map(|l| format!("level {} {} ({})", l.level, l.name, l.period)).collect();
+    println!("{} is alive: {}", shared.name, layers.join(", "));
+    println!("wires: iceoryx2 service {}", ipc::wire::iceoryx::service_of(&shared.name));
+    if let Some(page) = page {
+        println!("look at it: http://{}/", page.address());
+    }
+    println!("plug the next layer in, from another terminal: cargo run --release -p allen");
+    println!("ask it: cargo run --release -p tools -- status        leave: Ctrl-C");
+}
+
+fn wait(options: &Options, leave: &AtomicBool) {
+    let began = Instant::now();
+    let limit = options.seconds.map(Duration::from_secs_f64);
+    while !leave.load(Ordering::Relaxed) && limit.is_none_or(|limit| began.elapsed() < limit) {
+        std::thread::sleep(Duration::from_millis(20));
+    }
+}

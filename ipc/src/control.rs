@@ -82,6 +82,8 @@ pub enum Request {
     Reset,
     /// Joins a layer for as long as this connection lasts.
     Plug(Plug),
+    /// The joined layer leaves of its own will; no answer is waited for.
+    Unplug,
 }
 
 /// A layer that wants to join.

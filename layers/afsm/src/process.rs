@@ -226,6 +226,8 @@ impl Session {
             }
             clock::sleep_until(next);
         }
+        // If the daemon is gone already there is nobody to tell.
+        let _ = self.connection.send(&Request::Unplug);
         gone.store(true, Ordering::Relaxed);
         let _ = self.connection.socket().shutdown(std::net::Shutdown::Both);
         if let Some(keeper) = self.keeper.take() {
