@@ -196,6 +196,10 @@ impl Register {
         for tap in &mut self.taps {
             tap.look(now, Some(&self.limits));
         }
+        let in_hindsight = self.rejected_in_hindsight();
+        if in_hindsight {
+            self.held = None;
+        }
         let mut newest = None;
         if let Some((stamp, words)) = original {
             if self.passes_from(0, stamp) {
@@ -206,7 +210,7 @@ impl Register {
         }
         for k in 0..self.taps.len() {
             let Joined {
-                fresh: true,
+                fresh,
                 window: Some(window),
                 words,
                 ..
@@ -214,8 +218,15 @@ impl Register {
             else {
                 continue;
             };
-            if self.passes_from(k + 1, window.stamp) {
-                self.taps[k].counts.delivered += 1;
+            let passes = if fresh {
+                self.passes_from(k + 1, window.stamp)
+            } else {
+                // Looked at before, and counted then.
+                let above = &self.taps[k + 1..];
+                in_hindsight && tap::passes(window.stamp, above.iter().filter_map(|t| t.window))
+            };
+            if passes {
+                self.taps[k].counts.delivered += u64::from(fresh);
                 if newest.is_none_or(|(stamp, _)| window.stamp >= stamp) {
                     newest = Some((window.stamp, words));
                 }
@@ -225,6 +236,26 @@ impl Register {
             self.deliver(stamp, words);
         }
         sweep(&mut self.taps, now, gone);
+    }
+
+    /// Whether a tap's message that came in just now was written before the message held, and its window
+    /// rejects that: another process may stamp a message and be held up before it writes it. The register
+    /// must not keep a message that its suppressor overrules for as long as the window is open; what it
+    /// holds instead is the newest message of the taps.
+    fn rejected_in_hindsight(&self) -> bool {
+        let Some((held, _)) = self.held else {
+            return false;
+        };
+        // A message of a tap that stands further along is not the lower tap's to reject.
+        let from = self
+            .taps
+            .iter()
+            .rposition(|t| t.window.is_some_and(|w| w.stamp == held) && !t.fresh)
+            .map_or(0, |k| k + 1);
+        let above = &self.taps[from..];
+        above
+            .iter()
+            .any(|t| t.fresh && t.window.is_some_and(|w| w.holds(held)))
     }
 
     /// The newest message of the existing wire, if it was not seen before and is one.
