@@ -16,10 +16,12 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use iceoryx2::config::Config;
-use iceoryx2::port::publisher::Publisher;
+use iceoryx2::port::publisher::{Publisher, PublisherCreateError};
 use iceoryx2::port::update_connections::UpdateConnections;
 use iceoryx2::prelude::*;
-use iceoryx2::service::builder::publish_subscribe::{PublishSubscribeCreateError, PublishSubscribeOpenError};
+use iceoryx2::service::builder::publish_subscribe::{
+    PublishSubscribeOpenError, PublishSubscribeOpenOrCreateError,
+};
 use iceoryx2::service::ipc_threadsafe;
 
 use super::cell::{Cell, LAYOUT};
@@ -105,8 +107,9 @@ impl Domain {
     /// # Errors
     /// [`ShareError::Refused`] when shared memory cannot be used.
     pub fn join(name: &str) -> Result<Domain, ShareError> {
-        let config = config()?;
+        // First of all: reading the configuration would speak up already.
         set_log_level(LogLevel::Fatal);
+        let config = config()?;
         let name = NodeName::new(name).map_err(|_| ShareError::Name(name.into()))?;
         let node = NodeBuilder::new()
             .name(&name)
@@ -127,10 +130,14 @@ impl Domain {
     /// Makes the page of `wires` wires that this process owns under `name`.
     ///
     /// # Errors
-    /// [`ShareError::Owned`] when a living process owns that name, [`ShareError::Refused`] otherwise.
+    /// [`ShareError::Owned`] when a living process owns that name, [`ShareError::Incompatible`] when
+    /// readers of a former owner still hold pages of another layout, [`ShareError::Refused`] otherwise.
     pub fn own(&self, name: &str, wires: usize) -> Result<OwnedPage, ShareError> {
         assert!(wires <= WIRES_MAX, "at most {WIRES_MAX} wires in a page");
         let service_name = service_name(name)?;
+        self.clean();
+        // The service outlives an owner for as long as readers of its page live, so it being there says
+        // nothing. Its one publisher is what makes an owner.
         let service = self
             .node
             .service_builder(&service_name)
@@ -141,9 +148,11 @@ impl Domain {
             .history_size(1)
             .subscriber_max_buffer_size(1)
             .enable_safe_overflow(true)
-            .create()
+            .open_or_create()
             .map_err(|e| match e {
-                PublishSubscribeCreateError::AlreadyExists => ShareError::Owned(name.into()),
+                PublishSubscribeOpenOrCreateError::PublishSubscribeOpenError(
+                    PublishSubscribeOpenError::IncompatibleTypes,
+                ) => ShareError::Incompatible(name.into()),
                 other => ShareError::Refused(format!("creating the service {service_name}: {other}")),
             })?;
         let slots = wires.max(1);
@@ -151,7 +160,10 @@ impl Domain {
             .publisher_builder()
             .initial_max_slice_len(slots)
             .create()
-            .map_err(|e| ShareError::Refused(format!("creating a publisher on {service_name}: {e}")))?;
+            .map_err(|e| match e {
+                PublisherCreateError::ExceedsMaxSupportedPublishers => ShareError::Owned(name.into()),
+                other => ShareError::Refused(format!("creating a publisher on {service_name}: {other}")),
+            })?;
         let sample = publisher
             .loan_slice_uninit(slots)
             .map_err(|e| ShareError::Refused(format!("loaning the page of {service_name}: {e}")))?;
@@ -178,6 +190,7 @@ impl Domain {
     /// [`ShareError::Absent`], [`ShareError::Incompatible`], [`ShareError::Silent`].
     pub fn map(&self, name: &str) -> Result<Arc<Page>, ShareError> {
         let service_name = service_name(name)?;
+        self.clean();
         let service = self
             .node
             .service_builder(&service_name)
@@ -188,6 +201,10 @@ impl Domain {
                 PublishSubscribeOpenError::IncompatibleTypes => ShareError::Incompatible(name.into()),
                 other => ShareError::Refused(format!("opening the service {service_name}: {other}")),
             })?;
+        // Other readers of an owner that is gone keep its service in being.
+        if service.dynamic_config().number_of_publishers() == 0 {
+            return Err(ShareError::Absent(name.into()));
+        }
         let subscriber = service
             .subscriber_builder()
             .create()
