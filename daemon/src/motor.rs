@@ -21,7 +21,7 @@ use crate::executor::gauge::BeatGauge;
 use crate::gate::{Causes, Gate, Passage, Seen};
 
 /// The halt channel: how others close the gate, and how all can see whether it is closed.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub struct HaltChannel {
     /// Causes that stand now, latched by others; bits of [`Causes`].
     standing: AtomicU64,
@@ -31,6 +31,18 @@ pub struct HaltChannel {
     decided: AtomicU64,
     /// When that last changed.
     since: AtomicU64,
+}
+
+impl Default for HaltChannel {
+    /// Nothing is latched; the gate has not opened yet.
+    fn default() -> Self {
+        HaltChannel {
+            standing: AtomicU64::new(0),
+            resets: AtomicU64::new(0),
+            decided: AtomicU64::new(Causes::START.0),
+            since: AtomicU64::new(0),
+        }
+    }
 }
 
 impl HaltChannel {

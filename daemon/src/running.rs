@@ -211,7 +211,7 @@ impl Running {
     }
 
     /// Halts the body, waits until it stands, ends every thread.
-    pub fn shut_down(self) {
+    pub fn shut_down(mut self) {
         self.shared.halt.halt(Causes::SHUTDOWN);
         // Ten beats of the motor unit at its default period; then its end of the link is stale anyway.
         for _ in 0..20 {
@@ -223,10 +223,16 @@ impl Running {
         // From full speed at the braking of a small robot: 0.3 m/s at 1 m/s².
         std::thread::sleep(Duration::from_millis(300));
         self.stop.store(true, Ordering::Relaxed);
-        self.beating.into_iter().for_each(Beating::join);
+        self.beating.drain(..).for_each(Beating::join);
         self.leave.store(true, Ordering::Relaxed);
-        for helper in self.helpers {
+        for helper in self.helpers.drain(..) {
             let _ = helper.join();
+        }
+        let Running { shared, .. } = self;
+        // Callers may hold it a moment longer; then the next daemon cleans up.
+        if let Ok(shared) = Arc::try_unwrap(shared) {
+            drop(shared.plugs);
+            shared.domain.leave();
         }
     }
 }

@@ -16,10 +16,12 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use iceoryx2::config::Config;
-use iceoryx2::port::publisher::Publisher;
+use iceoryx2::port::publisher::{Publisher, PublisherCreateError};
 use iceoryx2::port::update_connections::UpdateConnections;
 use iceoryx2::prelude::*;
-use iceoryx2::service::builder::publish_subscribe::{PublishSubscribeCreateError, PublishSubscribeOpenError};
+use iceoryx2::service::builder::publish_subscribe::{
+    PublishSubscribeOpenError, PublishSubscribeOpenOrCreateError,
+};
 use iceoryx2::service::ipc_threadsafe;
 
 use super::cell::{Cell, LAYOUT};
@@ -86,6 +88,9 @@ impl fmt::Display for ShareError {
 
 impl std::error::Error for ShareError {}
 
+/// How the file ends in which iceoryx2 0.10 counts the nodes of a domain.
+const COUNTER_SUFFIX: &str = "_node.0_10_0.global_mgmt";
+
 type Service = ipc_threadsafe::Service;
 type Subscriber = iceoryx2::port::subscriber::Subscriber<Service, [Cell], ()>;
 type Sample = iceoryx2::sample::Sample<Service, [Cell], ()>;
@@ -105,8 +110,9 @@ impl Domain {
     /// # Errors
     /// [`ShareError::Refused`] when shared memory cannot be used.
     pub fn join(name: &str) -> Result<Domain, ShareError> {
-        let config = config()?;
+        // First of all: reading the configuration would speak up already.
         set_log_level(LogLevel::Fatal);
+        let config = config()?;
         let name = NodeName::new(name).map_err(|_| ShareError::Name(name.into()))?;
         let node = NodeBuilder::new()
             .name(&name)
@@ -124,13 +130,41 @@ impl Domain {
         let _ = self.node.try_cleanup_dead_nodes();
     }
 
+    /// Leaves the domain, and takes along the one file that iceoryx2 keeps for the domain itself (its counter
+    /// of nodes) if nobody else is left in it. Pages must have been dropped before.
+    pub fn leave(self) {
+        self.clean();
+        let config = self.node.config().clone();
+        drop(self.node);
+        let mut others = false;
+        let listed = Node::<Service>::list(&config, |_| {
+            others = true;
+            CallbackProgression::Stop
+        });
+        if listed.is_err() || others {
+            return;
+        }
+        let prefix = config.global.prefix.to_string();
+        for entry in std::fs::read_dir("/dev/shm").into_iter().flatten().flatten() {
+            let name = entry.file_name().to_string_lossy().into_owned();
+            let ours = name.strip_prefix(&prefix).and_then(|rest| rest.strip_suffix(COUNTER_SUFFIX));
+            if ours.is_some_and(|hash| hash.len() == 40 && hash.bytes().all(|b| b.is_ascii_hexdigit())) {
+                let _ = std::fs::remove_file(entry.path());
+            }
+        }
+    }
+
     /// Makes the page of `wires` wires that this process owns under `name`.
     ///
     /// # Errors
-    /// [`ShareError::Owned`] when a living process owns that name, [`ShareError::Refused`] otherwise.
+    /// [`ShareError::Owned`] when a living process owns that name, [`ShareError::Incompatible`] when
+    /// readers of a former owner still hold pages of another layout, [`ShareError::Refused`] otherwise.
     pub fn own(&self, name: &str, wires: usize) -> Result<OwnedPage, ShareError> {
         assert!(wires <= WIRES_MAX, "at most {WIRES_MAX} wires in a page");
         let service_name = service_name(name)?;
+        self.clean();
+        // The service outlives an owner for as long as readers of its page live, so it being there says
+        // nothing. Its one publisher is what makes an owner.
         let service = self
             .node
             .service_builder(&service_name)
@@ -141,9 +175,11 @@ impl Domain {
             .history_size(1)
             .subscriber_max_buffer_size(1)
             .enable_safe_overflow(true)
-            .create()
+            .open_or_create()
             .map_err(|e| match e {
-                PublishSubscribeCreateError::AlreadyExists => ShareError::Owned(name.into()),
+                PublishSubscribeOpenOrCreateError::PublishSubscribeOpenError(
+                    PublishSubscribeOpenError::IncompatibleTypes,
+                ) => ShareError::Incompatible(name.into()),
                 other => ShareError::Refused(format!("creating the service {service_name}: {other}")),
             })?;
         let slots = wires.max(1);
@@ -151,7 +187,10 @@ impl Domain {
             .publisher_builder()
             .initial_max_slice_len(slots)
             .create()
-            .map_err(|e| ShareError::Refused(format!("creating a publisher on {service_name}: {e}")))?;
+            .map_err(|e| match e {
+                PublisherCreateError::ExceedsMaxSupportedPublishers => ShareError::Owned(name.into()),
+                other => ShareError::Refused(format!("creating a publisher on {service_name}: {other}")),
+            })?;
         let sample = publisher
             .loan_slice_uninit(slots)
             .map_err(|e| ShareError::Refused(format!("loaning the page of {service_name}: {e}")))?;
@@ -178,6 +217,7 @@ impl Domain {
     /// [`ShareError::Absent`], [`ShareError::Incompatible`], [`ShareError::Silent`].
     pub fn map(&self, name: &str) -> Result<Arc<Page>, ShareError> {
         let service_name = service_name(name)?;
+        self.clean();
         let service = self
             .node
             .service_builder(&service_name)
@@ -188,6 +228,10 @@ impl Domain {
                 PublishSubscribeOpenError::IncompatibleTypes => ShareError::Incompatible(name.into()),
                 other => ShareError::Refused(format!("opening the service {service_name}: {other}")),
             })?;
+        // Other readers of an owner that is gone keep its service in being.
+        if service.dynamic_config().number_of_publishers() == 0 {
+            return Err(ShareError::Absent(name.into()));
+        }
         let subscriber = service
             .subscriber_builder()
             .create()

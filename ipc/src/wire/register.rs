@@ -37,6 +37,8 @@ pub struct TapEnd {
     pub level: u8,
     /// Whose it is.
     pub plug: Plug,
+    /// Its number among the taps of its owner, for those who watch.
+    pub id: u32,
     /// Where what happens at it is counted, for those who watch.
     pub gauge: Arc<TapGauge>,
 }
@@ -142,6 +144,7 @@ impl Joined {
 
     pub(super) fn state(&self) -> TapState {
         TapState {
+            id: self.end.id,
             window: self.window,
             counts: self.end.gauge.counts(),
         }
@@ -231,6 +234,10 @@ impl Register {
         for tap in &mut self.taps {
             tap.look(now, Some(&self.limits));
         }
+        let in_hindsight = self.rejected_in_hindsight();
+        if in_hindsight {
+            self.held = None;
+        }
         let mut newest = None;
         if let Some((stamp, words)) = original {
             if self.passes_from(0, stamp) {
@@ -241,7 +248,7 @@ impl Register {
         }
         for k in 0..self.taps.len() {
             let Joined {
-                fresh: true,
+                fresh,
                 window: Some(window),
                 words,
                 ..
@@ -249,8 +256,17 @@ impl Register {
             else {
                 continue;
             };
-            if self.passes_from(k + 1, window.stamp) {
-                count(&self.taps[k].end.gauge.delivered);
+            let passes = if fresh {
+                self.passes_from(k + 1, window.stamp)
+            } else {
+                // Looked at before, and counted then.
+                let above = &self.taps[k + 1..];
+                in_hindsight && tap::passes(window.stamp, above.iter().filter_map(|t| t.window))
+            };
+            if passes {
+                if fresh {
+                    count(&self.taps[k].end.gauge.delivered);
+                }
                 if newest.is_none_or(|(stamp, _)| window.stamp >= stamp) {
                     newest = Some((window.stamp, words));
                 }
@@ -260,6 +276,26 @@ impl Register {
             self.deliver(stamp, words);
         }
         sweep(&mut self.taps, now, gone);
+    }
+
+    /// Whether a tap's message that came in just now was written before the message held, and its window
+    /// rejects that: another process may stamp a message and be held up before it writes it. The register
+    /// must not keep a message that its suppressor overrules for as long as the window is open; what it
+    /// holds instead is the newest message of the taps.
+    fn rejected_in_hindsight(&self) -> bool {
+        let Some((held, _)) = self.held else {
+            return false;
+        };
+        // A message of a tap that stands further along is not the lower tap's to reject.
+        let from = self
+            .taps
+            .iter()
+            .rposition(|t| t.window.is_some_and(|w| w.stamp == held) && !t.fresh)
+            .map_or(0, |k| k + 1);
+        let above = &self.taps[from..];
+        above
+            .iter()
+            .any(|t| t.fresh && t.window.is_some_and(|w| w.holds(held)))
     }
 
     /// The newest message of the existing wire, if it was not seen before and is one.
@@ -328,6 +364,8 @@ impl Register {
 /// A tap as it stands, for those who watch.
 #[derive(Clone, Copy, Debug)]
 pub struct TapState {
+    /// The tap's number among those of its owner.
+    pub id: u32,
     /// Its newest message's window.
     pub window: Option<Window>,
     /// What was counted.

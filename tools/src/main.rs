@@ -1,0 +1,92 @@
+//! `subsumectl`: looks at a running creature, stops it, checks creature files.
+
+mod check;
+mod live;
+mod watch;
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+use ipc::control::Request;
+
+/// Looks at a running creature, stops it, checks creature files.
+#[derive(Parser, Debug)]
+#[command(name = "subsumectl", version, after_help = "Examples:\n  \
+    subsumectl status                     what the creature does\n  \
+    subsumectl watch turn.heading         messages of a wire as they come\n  \
+    subsumectl halt; subsumectl reset     emergency stop, and its end\n  \
+    subsumectl --creature jerry status    another instance\n  \
+    subsumectl check mine.toml            every error of a creature file\n\n\
+    Status: 0 done; 1 not done (no daemon, refused); 2 bad input.")]
+struct Options {
+    /// The running creature to speak to
+    #[arg(long, global = true, default_value = "allen", value_name = "NAME")]
+    creature: String,
+    /// Machine-readable output
+    #[arg(long, global = true)]
+    json: bool,
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand, Debug)]
+enum Command {
+    /// Layers with beats, overruns and latencies; who is attached; halt state
+    Status,
+    /// Every wire with type, rate, age and newest value
+    Wires,
+    /// Messages of a wire as they come, until Ctrl-C
+    Watch {
+        /// The wire, named after its output port, such as sonar.map
+        wire: String,
+        /// Leave after this many messages
+        #[arg(long, value_name = "N")]
+        count: Option<u64>,
+        /// Leave after this many seconds
+        #[arg(long, value_name = "N")]
+        seconds: Option<f64>,
+    },
+    /// What happened: layers that came and went, halts, overruns
+    Events,
+    /// Emergency stop; holds until reset
+    Halt,
+    /// Ends an emergency stop
+    Reset,
+    /// Checks creature files and shows every error with its place
+    Check {
+        /// Creature files
+        #[arg(required = true)]
+        files: Vec<PathBuf>,
+    },
+    /// Lists the kinds of module, or explains one
+    Modules {
+        /// A kind of module
+        name: Option<String>,
+    },
+}
+
+fn main() -> ExitCode {
+    let options = Options::parse();
+    let (creature, json) = (options.creature.as_str(), options.json);
+    let done = match options.command {
+        Command::Status => live::status(creature, json),
+        Command::Wires => live::wires(creature, json),
+        Command::Watch { wire, count, seconds } => watch::watch(creature, &wire, json, count, seconds),
+        Command::Events => live::events(creature, json),
+        Command::Halt => live::order(creature, json, Request::Halt, "halted; `subsumectl reset` ends it"),
+        Command::Reset => live::order(creature, json, Request::Reset, "reset"),
+        Command::Check { files } => return check::check(&files, json),
+        Command::Modules { name } => return check::modules(name.as_deref(), json),
+    };
+    match done {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(message) => {
+            if json {
+                println!("{}", serde_json::json!({ "error": message }));
+            }
+            eprintln!("subsumectl: {message}");
+            ExitCode::FAILURE
+        }
+    }
+}
