@@ -1,1 +1,11 @@
-//! placeholder
+//! The keeper of a creature's body: executor, halt gate, motor unit, bodies, and what the `subsumed` daemon is
+//! made of.
+//!
+//! Must never know a behaviour; layers come to it as checked wiring and boxes that step.
+
+pub mod body;
+pub mod executor;
+pub mod gate;
+pub mod machine;
+pub mod motor;
+pub mod virtual_run;

@@ -70,7 +70,9 @@ impl Outlet {
         if !self.taps.is_empty() {
             for tap in &mut self.taps {
                 tap.look(u, None);
-                tap.counts.delivered += u64::from(tap.fresh);
+                if tap.fresh {
+                    tap.take_effect();
+                }
             }
             open = tap::emits(u, self.taps.iter().filter_map(|t| t.window));
             if !open && self.staged.is_some() {
@@ -80,7 +82,7 @@ impl Outlet {
                     .iter_mut()
                     .rfind(|t| t.window.is_some_and(|w| w.holds(u)))
                 {
-                    tap.counts.rejected += 1;
+                    tap.reject();
                 }
             }
             sweep(&mut self.taps, u, gone);

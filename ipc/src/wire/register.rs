@@ -7,6 +7,9 @@
 //!   existing wire ──► (S level 1) ──► (S level 1, declared later) ──► (S level 2) ──► register ──► module
 //! ```
 
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+
 use super::page::Reader;
 use crate::clock::{Span, Time};
 use crate::message::{Kind, WORDS_MAX, Words};
@@ -34,8 +37,33 @@ pub struct TapEnd {
     pub level: u8,
     /// Whose it is.
     pub plug: Plug,
-    /// Its number in the creature, for those who watch.
-    pub id: u32,
+    /// Where what happens at it is counted, for those who watch.
+    pub gauge: Arc<TapGauge>,
+}
+
+/// Counters of a tap that other threads may look at.
+#[derive(Debug, Default)]
+pub struct TapGauge {
+    delivered: AtomicU64,
+    rejected: AtomicU64,
+    faults: AtomicU64,
+}
+
+impl TapGauge {
+    /// What was counted so far.
+    pub fn counts(&self) -> TapCounts {
+        // Relaxed: numbers to look at; nothing hangs on their order.
+        TapCounts {
+            delivered: self.delivered.load(Ordering::Relaxed),
+            rejected: self.rejected.load(Ordering::Relaxed),
+            faults: self.faults.load(Ordering::Relaxed),
+        }
+    }
+}
+
+/// Counts one more. Only the thread that owns the port counts, so load and store need not be one step.
+fn count(counter: &AtomicU64) {
+    counter.store(counter.load(Ordering::Relaxed) + 1, Ordering::Relaxed);
 }
 
 /// What was counted at one tap.
@@ -60,7 +88,6 @@ pub(super) struct Joined {
     pub(super) fresh: bool,
     /// Told to go; stays until its window has run out, so that nothing rejected comes back to life.
     pub(super) leaving: bool,
-    pub(super) counts: TapCounts,
 }
 
 impl Joined {
@@ -74,7 +101,6 @@ impl Joined {
             words: [0.0; WORDS_MAX],
             fresh: false,
             leaving: false,
-            counts: TapCounts::default(),
         }
     }
 
@@ -92,7 +118,7 @@ impl Joined {
         let stamp = match plausible(reading.stamp, now) {
             Some(stamp) if stamp >= newest && limits.is_none_or(|l| l.accept(&reading.words)) => stamp,
             _ => {
-                self.counts.faults += 1;
+                count(&self.end.gauge.faults);
                 return;
             }
         };
@@ -104,11 +130,20 @@ impl Joined {
         self.fresh = true;
     }
 
+    /// Counts a message of the wire that this tap's window kept out.
+    pub(super) fn reject(&self) {
+        count(&self.end.gauge.rejected);
+    }
+
+    /// Counts a message of the tap that took effect.
+    pub(super) fn take_effect(&self) {
+        count(&self.end.gauge.delivered);
+    }
+
     pub(super) fn state(&self) -> TapState {
         TapState {
-            id: self.end.id,
             window: self.window,
-            counts: self.counts,
+            counts: self.end.gauge.counts(),
         }
     }
 
@@ -226,7 +261,9 @@ impl Register {
                 in_hindsight && tap::passes(window.stamp, above.iter().filter_map(|t| t.window))
             };
             if passes {
-                self.taps[k].counts.delivered += u64::from(fresh);
+                if fresh {
+                    self.taps[k].take_effect();
+                }
                 if newest.is_none_or(|(stamp, _)| window.stamp >= stamp) {
                     newest = Some((window.stamp, words));
                 }
@@ -279,7 +316,7 @@ impl Register {
             return true;
         }
         if let Some(tap) = above.iter_mut().rfind(|t| t.window.is_some_and(|w| w.holds(u))) {
-            tap.counts.rejected += 1;
+            tap.reject();
         }
         false
     }
@@ -324,8 +361,6 @@ impl Register {
 /// A tap as it stands, for those who watch.
 #[derive(Clone, Copy, Debug)]
 pub struct TapState {
-    /// The tap's number in the creature.
-    pub id: u32,
     /// Its newest message's window.
     pub window: Option<Window>,
     /// What was counted.

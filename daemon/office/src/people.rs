@@ -1,0 +1,334 @@
+//! The people in the office: where each of them wants to go next.
+//!
+//! ```text
+//! walker:    1 Stand ──time──► 2 Go ──arrived, or no headway──► 1
+//! attacker:  3 Chase ──close──► 4 Pester ──time──► 2 Go (away) ──arrived──► 1 Stand ──time──► 3
+//!            4 ──robot got away──► 3        3 ──no headway──► 2
+//! scripted:  5 Straight, for ever
+//! ```
+//!
+//! People decide; they never end inside a wall, each other or the robot, because `discs.rs` settles
+//! their moves like everybody's. A person who does touch the robot walked into it.
+
+use crate::config::PERSON_RADIUS_M;
+use crate::discs::{Disc, settled};
+use crate::noise::Noise;
+use crate::plane::Vec2;
+use crate::space::Space;
+use crate::view::PersonKind;
+use crate::ways::Ways;
+
+/// Slowest and fastest pace of a walker, m/s: people indoors with a coffee in hand.
+const PACE_M_S: (f64, f64) = (0.4, 0.7);
+/// Pace of an attacker, m/s: faster than the robot can flee.
+const ATTACK_PACE_M_S: f64 = 0.5;
+/// How fast people change their velocity, m/s².
+const ACCELERATION_M_S2: f64 = 2.0;
+/// A way point counts as reached within this distance, m.
+const REACHED_M: f64 = 0.22;
+/// How long a walker stands at a goal, s.
+const STAND_S: (f64, f64) = (2.0, 20.0);
+/// How long one stands who made no headway, before trying another goal, s.
+const BALKED_S: (f64, f64) = (0.5, 3.0);
+/// How long an attacker stands in front of the robot, s.
+const PESTER_S: (f64, f64) = (2.0, 6.0);
+/// How long an attacker stays away, s.
+const AWAY_S: (f64, f64) = (3.0, 15.0);
+/// Gap to the robot at which an attacker stops, m; below zero means walking up until they touch.
+const STAND_OFF_M: (f64, f64) = (-0.1, 0.3);
+/// An attacker lets the robot get this much farther than the stand-off before following, m.
+const FOLLOW_M: f64 = 0.4;
+/// People begin to go round somebody at this gap, m.
+const ASIDE_M: f64 = 0.6;
+/// Headway is looked at this often, s, and should be at least so many m.
+const HEADWAY: (f64, f64) = (3.0, 0.25);
+/// How often an attacker looks where the robot is, s.
+const LOOK_S: f64 = 0.5;
+/// Radius that must be free for an attacker to walk straight at the robot, m: a little less than the
+/// robot's, or a robot against a wall could hide there.
+const APPROACH_RADIUS_M: f64 = 0.18;
+/// Probability that a walker on the way to a goal does not notice the robot: reading on the move.
+const CARELESS: f64 = 0.15;
+
+#[derive(Clone, Copy, Debug)]
+enum Intent {
+    Stand { until_s: f64 },
+    Go { goal: usize, via: usize },
+    Chase { look_s: f64, via: Option<usize> },
+    Pester { until_s: f64 },
+    Straight { velocity: Vec2 },
+}
+
+/// What a person can know of the office.
+pub(crate) struct Surroundings<'a> {
+    pub(crate) space: &'a Space,
+    pub(crate) ways: &'a Ways,
+    /// The robot first, then the people.
+    pub(crate) discs: &'a [Disc],
+    pub(crate) time_s: f64,
+    pub(crate) dt_s: f64,
+}
+
+pub(crate) struct Person {
+    pub(crate) kind: PersonKind,
+    pub(crate) heading: f64,
+    /// This person's place in the row of discs.
+    index: usize,
+    velocity: Vec2,
+    pace: f64,
+    stand_off: f64,
+    careless: bool,
+    intent: Intent,
+    /// Where this person was when headway was last looked at, and when it will be again.
+    mark: Vec2,
+    mark_s: f64,
+}
+
+impl Person {
+    /// A walker or an attacker, standing for a moment before the first way.
+    pub(crate) fn new(kind: PersonKind, index: usize, at: Vec2, noise: &mut Noise) -> Person {
+        let pace = match kind {
+            PersonKind::Walker => noise.between(PACE_M_S.0, PACE_M_S.1),
+            _ => ATTACK_PACE_M_S,
+        };
+        Person {
+            kind,
+            heading: 0.0,
+            index,
+            velocity: Vec2::default(),
+            pace,
+            stand_off: noise.between(STAND_OFF_M.0, STAND_OFF_M.1),
+            careless: false,
+            intent: Intent::Stand {
+                until_s: noise.between(0.0, 5.0),
+            },
+            mark: at,
+            mark_s: 0.0,
+        }
+    }
+
+    /// Somebody who walks on a straight line at `velocity`, m/s, whatever is in the way.
+    pub(crate) fn scripted(index: usize, at: Vec2, velocity: Vec2) -> Person {
+        Person {
+            kind: PersonKind::Scripted,
+            heading: velocity.angle(),
+            index,
+            velocity,
+            pace: velocity.length(),
+            stand_off: 0.0,
+            careless: true,
+            intent: Intent::Straight { velocity },
+            mark: at,
+            mark_s: 0.0,
+        }
+    }
+
+    /// One step: where this person ends, m.
+    pub(crate) fn step(&mut self, around: &Surroundings<'_>, noise: &mut Noise) -> Vec2 {
+        let at = around.discs[self.index].at;
+        let direction = self.wish(at, around, noise);
+        let wished = match self.intent {
+            Intent::Straight { velocity } => velocity,
+            _ => self.aside(direction, around) * self.pace,
+        };
+        let change = wished - self.velocity;
+        let change_max = ACCELERATION_M_S2 * around.dt_s;
+        let length = change.length();
+        self.velocity = if length > change_max {
+            self.velocity + change * (change_max / length)
+        } else {
+            wished
+        };
+        if self.velocity.length() == 0.0 {
+            return at;
+        }
+        let now = settled(
+            around.space,
+            around.discs,
+            self.index,
+            at + self.velocity * around.dt_s,
+        );
+        let moved = now - at;
+        if moved.length() > 0.2 * self.pace * around.dt_s {
+            self.heading = moved.angle();
+        }
+        now
+    }
+
+    /// The direction this person would like to walk in: a unit vector, or zero to stand.
+    fn wish(&mut self, at: Vec2, around: &Surroundings<'_>, noise: &mut Noise) -> Vec2 {
+        let robot = around.discs[0];
+        let gap = robot.gap(&around.discs[self.index]);
+        let headway = self.headway(at, around.time_s);
+        match self.intent {
+            Intent::Straight { velocity } => velocity.unit(),
+            Intent::Stand { until_s } => {
+                if around.time_s >= until_s {
+                    match self.kind {
+                        PersonKind::Attacker => self.chase(around.time_s, noise),
+                        _ => self.go(at, around, noise),
+                    }
+                }
+                Vec2::default()
+            }
+            Intent::Go { goal, via } => {
+                if !headway {
+                    self.stand(around.time_s, BALKED_S, noise);
+                    return Vec2::default();
+                }
+                let to = around.ways.place(via) - at;
+                if to.length() > REACHED_M {
+                    return to.unit();
+                }
+                if via == goal {
+                    let stay = if self.kind == PersonKind::Attacker {
+                        AWAY_S
+                    } else {
+                        STAND_S
+                    };
+                    self.stand(around.time_s, stay, noise);
+                } else {
+                    self.intent = Intent::Go {
+                        goal,
+                        via: around.ways.next(via, goal),
+                    };
+                }
+                to.unit()
+            }
+            Intent::Chase { look_s, via } => {
+                if gap <= self.stand_off.max(0.001) {
+                    let until_s = around.time_s + noise.between(PESTER_S.0, PESTER_S.1);
+                    self.intent = Intent::Pester { until_s };
+                } else if !headway {
+                    self.go(at, around, noise);
+                } else if around.time_s >= look_s {
+                    let via = self.look(at, robot.at, around);
+                    self.intent = Intent::Chase {
+                        look_s: around.time_s + LOOK_S,
+                        via,
+                    };
+                }
+                (via.map_or(robot.at, |place| around.ways.place(place)) - at).unit()
+            }
+            Intent::Pester { until_s } => {
+                if around.time_s >= until_s {
+                    self.go(at, around, noise);
+                } else if gap > self.stand_off.max(0.0) + FOLLOW_M {
+                    self.chase(around.time_s, noise);
+                }
+                self.heading = (robot.at - at).angle();
+                Vec2::default()
+            }
+        }
+    }
+
+    /// False when this person has hardly moved since the last look.
+    fn headway(&mut self, at: Vec2, time_s: f64) -> bool {
+        if !matches!(self.intent, Intent::Go { .. } | Intent::Chase { .. }) {
+            (self.mark, self.mark_s) = (at, time_s + HEADWAY.0);
+            return true;
+        }
+        if time_s < self.mark_s {
+            return true;
+        }
+        let moved = (at - self.mark).length();
+        (self.mark, self.mark_s) = (at, time_s + HEADWAY.0);
+        moved >= HEADWAY.1
+    }
+
+    fn stand(&mut self, time_s: f64, how_long: (f64, f64), noise: &mut Noise) {
+        self.intent = Intent::Stand {
+            until_s: time_s + noise.between(how_long.0, how_long.1),
+        };
+    }
+
+    fn chase(&mut self, time_s: f64, noise: &mut Noise) {
+        self.stand_off = noise.between(STAND_OFF_M.0, STAND_OFF_M.1);
+        self.intent = Intent::Chase {
+            look_s: time_s,
+            via: None,
+        };
+    }
+
+    /// Sets out for a goal drawn at random; stands on where there is none.
+    fn go(&mut self, at: Vec2, around: &Surroundings<'_>, noise: &mut Noise) {
+        let goals = around.ways.goals();
+        if goals.is_empty() {
+            return self.stand(around.time_s, STAND_S, noise);
+        }
+        self.careless = noise.unit() < CARELESS;
+        let goal = goals[noise.below(goals.len())];
+        match around.ways.join(around.space, at, Some(goal)) {
+            Some(via) => self.intent = Intent::Go { goal, via },
+            None => self.stand(around.time_s, STAND_S, noise),
+        }
+    }
+
+    /// The way point by which an attacker gets at the robot; none when the way is straight.
+    fn look(&self, at: Vec2, robot: Vec2, around: &Surroundings<'_>) -> Option<usize> {
+        if around.space.passable(at, robot, APPROACH_RADIUS_M) {
+            return None;
+        }
+        let near_robot = around.ways.join(around.space, robot, None)?;
+        let via = around.ways.join(around.space, at, Some(near_robot))?;
+        if (around.ways.place(via) - at).length() > REACHED_M {
+            return Some(via);
+        }
+        (via != near_robot).then(|| around.ways.next(via, near_robot))
+    }
+
+    /// `direction` bent round whoever is in the way: those on the left are passed on the right, and
+    /// those dead ahead too.
+    fn aside(&self, direction: Vec2, around: &Surroundings<'_>) -> Vec2 {
+        let me = &around.discs[self.index];
+        let skip_robot = self.careless || matches!(self.intent, Intent::Chase { .. });
+        let mut bent = direction;
+        for (index, other) in around.discs.iter().enumerate() {
+            if index == self.index || (index == 0 && skip_robot && me.gap(other) > 0.01) {
+                continue;
+            }
+            let gap = me.gap(other);
+            let to = (other.at - me.at).unit();
+            let ahead = bent.dot(to);
+            if gap > ASIDE_M || ahead <= 0.3 || (index == 0 && matches!(self.intent, Intent::Chase { .. })) {
+                continue;
+            }
+            let nearness = 1.0 - (gap / ASIDE_M).max(0.0);
+            let on_the_right = direction.dot(to.left()) > 0.2;
+            let way_round = if on_the_right { to.left() } else { to.left() * -1.0 };
+            bent = bent - to * (ahead * nearness) + way_round * nearness;
+        }
+        if bent.length() > 1.0 { bent.unit() } else { bent }
+    }
+}
+
+/// Places for people to begin at: free, in reach of the way points, not on top of anybody.
+pub(crate) fn starting_place(
+    space: &Space,
+    ways: &Ways,
+    size: (f64, f64),
+    discs: &[Disc],
+    noise: &mut Noise,
+) -> Option<Vec2> {
+    /// Draws before giving up: a floor that is nine tenths full still has a free place in it.
+    const DRAWS_MAX: usize = 400;
+    for draw in 0..DRAWS_MAX {
+        let at = crate::plane::vec2(noise.between(0.0, size.0), noise.between(0.0, size.1));
+        let disc = Disc {
+            at,
+            radius: PERSON_RADIUS_M,
+        };
+        // Nobody begins within arm's reach of the robot unless the room is too small for that.
+        let room = if draw < DRAWS_MAX / 2 { 1.5 } else { 0.3 };
+        let free = discs
+            .iter()
+            .enumerate()
+            .all(|(i, other)| disc.gap(other) > if i == 0 { room } else { 0.1 })
+            && space.nearest(at, PERSON_RADIUS_M + 0.05).is_none();
+        let reachable = |place: usize| space.passable(at, ways.place(place), PERSON_RADIUS_M);
+        if free && ways.join(space, at, None).is_some_and(reachable) {
+            return Some(at);
+        }
+    }
+    None
+}

@@ -1,0 +1,197 @@
+//! Allen's ring of twelve ultrasonic range finders, with the ways in which such rings lie.
+//!
+//! Each transducer hears the nearest echo from its cone. The cone is sampled with seven rays; a ray
+//! that meets a flat surface at too small an angle is reflected away like light from a mirror, and
+//! is lost or, now and then, comes home by way of a second surface and reads long. People are
+//! round and clothed and always answer. A corner in view within the cone answers too, as an edge
+//! does. All twelve fire at once and do not hear each other.
+
+use crate::discs::Disc;
+use crate::noise::Noise;
+use crate::plane::Vec2;
+use crate::space::Space;
+use core::f64::consts::TAU;
+
+/// Transducers in the ring, 30 degrees apart (Brooks 1991, "Intelligence without representation", section 6.2).
+pub const SONARS: usize = 12;
+/// Rays that sample one cone: 5 degrees apart in a cone of 30.
+const RAYS: usize = 7;
+/// A hair's breadth, m, that keeps a reflected ray off the surface that it leaves, and a corner in
+/// sight of its own faces.
+const HAIR_M: f64 = 0.002;
+
+/// How well the ring measures. Ranges are of the size given for the Polaroid 6500 ranging module of
+/// the time (6 inches to 35 feet, about 1 percent); that sound is mirrored at less than thirty
+/// degrees to a surface and returns by several reflections is from Brooks 1991, section 6.2. The
+/// other figures are our choice.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SonarModel {
+    /// Nearest range that can be told, m; anything nearer reads this. 6 inches.
+    pub range_min_m: f64,
+    /// Farthest range, m; also the reading when no echo returns. 35 feet.
+    pub range_max_m: f64,
+    /// Error of a reading, one sigma, m: about 1 percent at two metres.
+    pub noise_m: f64,
+    /// Probability that a reading is lost whatever is there, and shows the farthest range.
+    pub dropout: f64,
+    /// A flat surface met at less than this angle between ray and surface reflects the sound away,
+    /// degrees.
+    pub specular_deg: f64,
+    /// Probability that sound reflected away is heard after all by way of a second surface: a
+    /// ghost, farther than the thing itself.
+    pub ghosts: f64,
+    /// Full width of the cone, degrees.
+    pub cone_deg: f64,
+}
+
+impl Default for SonarModel {
+    fn default() -> Self {
+        SonarModel {
+            range_min_m: 0.15,
+            range_max_m: 10.67,
+            noise_m: 0.02,
+            dropout: 0.01,
+            specular_deg: 30.0,
+            ghosts: 0.3,
+            cone_deg: 30.0,
+        }
+    }
+}
+
+impl SonarModel {
+    /// A ring with no noise, no dropouts and no ghosts; flat surfaces still reflect.
+    pub fn perfect() -> Self {
+        SonarModel {
+            range_min_m: 0.0,
+            noise_m: 0.0,
+            dropout: 0.0,
+            ghosts: 0.0,
+            ..SonarModel::default()
+        }
+    }
+}
+
+/// What the sound travels through.
+pub(crate) struct Air<'a> {
+    pub(crate) model: &'a SonarModel,
+    pub(crate) space: &'a Space,
+    /// The people; the robot is not among them.
+    pub(crate) people: &'a [Disc],
+}
+
+enum Echo {
+    /// The sound came back after this many m.
+    Heard(f64),
+    /// It left the surface at `at` in direction `onward`, after `gone` m.
+    Reflected {
+        at: Vec2,
+        onward: Vec2,
+        gone: f64,
+    },
+    Nothing,
+}
+
+impl Air<'_> {
+    /// All twelve readings, m from the robot's rim. Every reading draws the same number of random
+    /// values, so that what one transducer sees never changes what another draws.
+    pub(crate) fn ring(&self, robot: Disc, heading: f64, noise: &mut Noise) -> [f64; SONARS] {
+        core::array::from_fn(|i| {
+            let axis = heading + TAU * i as f64 / SONARS as f64;
+            let ghost = noise.unit() < self.model.ghosts;
+            let lost = noise.unit() < self.model.dropout;
+            let error = self.model.noise_m * noise.gauss();
+            let from = robot.at + Vec2::at_angle(axis) * robot.radius;
+            match self.reading(from, axis, ghost) {
+                Some(range) if !lost => (range + error).clamp(self.model.range_min_m, self.model.range_max_m),
+                _ => self.model.range_max_m,
+            }
+        })
+    }
+
+    /// The nearest echo, m, if there is one within range.
+    fn reading(&self, from: Vec2, axis: f64, ghost: bool) -> Option<f64> {
+        let reach = self.model.range_max_m;
+        let cone = self.model.cone_deg.to_radians();
+        let mut nearest = f64::INFINITY;
+        for i in 0..RAYS {
+            let angle = axis + cone * (i as f64 / (RAYS - 1) as f64 - 0.5);
+            let mut echo = self.cast(from, Vec2::at_angle(angle), reach);
+            if let (true, Echo::Reflected { at, onward, gone }) = (ghost, &echo) {
+                echo = match self.cast(*at + *onward * HAIR_M, *onward, reach - gone) {
+                    Echo::Heard(more) => Echo::Heard(gone + more),
+                    other => other,
+                };
+            }
+            if let Echo::Heard(distance) = echo {
+                nearest = nearest.min(distance);
+            }
+        }
+        self.nearest_corner(
+            from,
+            Vec2::at_angle(axis),
+            libm::cos(cone / 2.0),
+            nearest.min(reach),
+        )
+        .or((nearest <= reach).then_some(nearest))
+    }
+
+    /// What becomes of the sound along one ray.
+    fn cast(&self, from: Vec2, direction: Vec2, reach: f64) -> Echo {
+        let wall = self.space.ray(from, direction, reach);
+        let person = self.person(from, direction);
+        let wall_at = wall.as_ref().map_or(f64::INFINITY, |hit| hit.distance);
+        if person < wall_at {
+            return if person <= reach {
+                Echo::Heard(person)
+            } else {
+                Echo::Nothing
+            };
+        }
+        let Some(hit) = wall else { return Echo::Nothing };
+        let facing = direction.dot(hit.normal);
+        if libm::fabs(facing) >= libm::sin(self.model.specular_deg.to_radians()) {
+            return Echo::Heard(hit.distance);
+        }
+        let onward = direction - hit.normal * (2.0 * facing);
+        Echo::Reflected {
+            at: from + direction * hit.distance,
+            onward,
+            gone: hit.distance,
+        }
+    }
+
+    /// m to the nearest person on the ray.
+    fn person(&self, from: Vec2, direction: Vec2) -> f64 {
+        let mut nearest = f64::INFINITY;
+        for disc in self.people {
+            let to = disc.at - from;
+            let (along, across) = (to.dot(direction), to.dot(direction.left()));
+            let inside = disc.radius * disc.radius - across * across;
+            if inside >= 0.0 && along > 0.0 {
+                nearest = nearest.min((along - libm::sqrt(inside)).max(0.0));
+            }
+        }
+        nearest
+    }
+
+    /// m to the nearest corner in sight within the cone and nearer than `within`.
+    fn nearest_corner(&self, from: Vec2, axis: Vec2, cos_half_cone: f64, within: f64) -> Option<f64> {
+        let mut nearest = within;
+        let mut found = None;
+        for &corner in self.space.corners() {
+            let to = corner - from;
+            let distance = to.length();
+            if distance >= nearest || to.dot(axis) < distance * cos_half_cone || distance < HAIR_M {
+                continue;
+            }
+            let direction = to * (1.0 / distance);
+            let hidden = self.space.ray(from, direction, distance - HAIR_M).is_some()
+                || self.person(from, direction) < distance;
+            if !hidden {
+                nearest = distance;
+                found = Some(distance);
+            }
+        }
+        found
+    }
+}

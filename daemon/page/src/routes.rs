@@ -1,0 +1,54 @@
+//! Which request leads where.
+
+use crate::Source;
+use crate::answer::Answer;
+use crate::request::{Head, Unread};
+use crate::{assets, origin};
+
+/// The answer to a request.
+pub(crate) fn answer(head: &Head, source: &dyn Source) -> Answer {
+    if let Some(why) = origin::refusal(head) {
+        return Answer::refusal("403 Forbidden", why);
+    }
+    match (head.method.as_str(), head.path.as_str()) {
+        ("GET", "/api/plan") => Answer::json(source.plan()),
+        ("GET", "/api/state") => Answer::json(source.state()),
+        ("POST", "/api/halt") => {
+            source.halt();
+            Answer::json("{\"halted\":true}".to_owned())
+        }
+        ("POST", "/api/reset") => match source.reset() {
+            Ok(()) => Answer::json("{\"reset\":true}".to_owned()),
+            Err(why) => Answer::refusal("409 Conflict", &why),
+        },
+        (_, "/api/plan" | "/api/state") => method("use GET"),
+        (_, "/api/halt" | "/api/reset") => method("use POST"),
+        ("GET", path) => match assets::find(path) {
+            Some(asset) => Answer {
+                status: "200 OK",
+                media: asset.media,
+                text: asset.text.into(),
+            },
+            None => Answer::refusal("404 Not Found", "there is nothing here"),
+        },
+        _ => method("use GET"),
+    }
+}
+
+/// The answer to something that is no request, or nothing if nobody is left to read it.
+pub(crate) fn answer_unread(unread: &Unread) -> Option<Answer> {
+    match unread {
+        Unread::Gone => None,
+        Unread::Malformed(why) => Some(Answer::refusal("400 Bad Request", why)),
+        Unread::HeadTooLarge => {
+            let status = "431 Request Header Fields Too Large";
+            Some(Answer::refusal(status, "the request is too large"))
+        }
+        Unread::BodyTooLarge => Some(Answer::refusal("413 Content Too Large", "the body is too large")),
+    }
+}
+
+/// A known path with a wrong method.
+fn method(why: &str) -> Answer {
+    Answer::refusal("405 Method Not Allowed", why)
+}

@@ -1,0 +1,3 @@
+//! Executor.
+
+pub mod gauge;

@@ -1,0 +1,159 @@
+//! A creature as checked: what the executor assembles and pictures are drawn from.
+//!
+//! Must never be made but by the checker ([`super::check`]): that every name in it resolves, every type
+//! matches and every tap points downward is then a fact, not a hope.
+
+use super::catalog::{Declaration, Setting};
+use crate::clock::Span;
+
+/// The name under which the body's ports appear on wires.
+pub const BODY: &str = "body";
+
+/// A checked creature.
+#[derive(Clone, Debug)]
+pub struct Creature {
+    /// Its name.
+    pub name: String,
+    /// The seed of everything random in it.
+    pub seed: u64,
+    /// Its body, if it has one (a manifest of a layer has none).
+    pub body: Option<Body>,
+    /// Its layers, lowest level first.
+    pub layers: Vec<Layer>,
+    /// How it halts.
+    pub halt: Halt,
+    /// What processes outside may do.
+    pub outsiders: Outsiders,
+}
+
+/// The body and its motor unit.
+#[derive(Clone, Debug)]
+pub struct Body {
+    /// What kind.
+    pub declaration: &'static Declaration,
+    /// Beat of the motor unit.
+    pub period: Span,
+    /// Its parameters, in the declaration's order.
+    pub settings: Vec<Setting>,
+}
+
+/// A layer: the modules that together give one level of competence.
+#[derive(Clone, Debug)]
+pub struct Layer {
+    /// Its name.
+    pub name: String,
+    /// Its level, counted up from 0.
+    pub level: u8,
+    /// Time between beats.
+    pub period: Span,
+    /// When its beats lie within the period.
+    pub phase: Span,
+    /// SCHED_FIFO priority; rate-monotonic if not given.
+    pub priority: Option<u8>,
+    /// The processor it is bound to; any if not given.
+    pub cpu: Option<usize>,
+    /// What happens when a beat runs over its period.
+    pub overrun: Overrun,
+    /// Whether the body halts when it misses its beats.
+    pub vital: bool,
+    /// Its modules, in the order of the file.
+    pub modules: Vec<Module>,
+    /// Wires into its modules and into the body.
+    pub wires: Vec<Wire>,
+    /// Taps it joins into lower layers, in the order of the file.
+    pub taps: Vec<Tap>,
+}
+
+/// A module: one augmented finite state machine.
+#[derive(Clone, Debug)]
+pub struct Module {
+    /// Its name, unique in the creature.
+    pub name: String,
+    /// What kind.
+    pub declaration: &'static Declaration,
+    /// Its parameters, in the declaration's order.
+    pub settings: Vec<Setting>,
+}
+
+/// A port of a module (or of the body): `module.port`.
+#[derive(Clone, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct PortName {
+    /// The module, or [`BODY`].
+    pub module: String,
+    /// The port.
+    pub port: String,
+}
+
+impl std::fmt::Display for PortName {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{}.{}", self.module, self.port)
+    }
+}
+
+/// A connection from an output port to an input port. The wire itself is named after the output.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Wire {
+    /// The output port.
+    pub from: PortName,
+    /// The input port.
+    pub to: PortName,
+}
+
+/// Which way a tap acts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum How {
+    /// At an input port: replaces.
+    Suppress,
+    /// At an output port: drops.
+    Inhibit,
+}
+
+/// A side-tap.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Tap {
+    /// Which way it acts.
+    pub how: How,
+    /// The output port its messages come from.
+    pub from: PortName,
+    /// The port it acts on: an input for suppress, an output for inhibit.
+    pub to: PortName,
+    /// Its time constant τ.
+    pub time_constant: Span,
+}
+
+/// What happens when a beat runs over its period.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Overrun {
+    /// The beats that were missed are left out; the next one comes at its own time.
+    Skip,
+    /// The beats that were missed are made up for, back to back.
+    CatchUp,
+    /// The body halts.
+    Halt,
+}
+
+/// How the creature halts.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Halt {
+    /// Outputs whose messages stop the body's forward motion, on a channel that nothing can tap.
+    pub reflexes: Vec<PortName>,
+    /// How long a reflex holds after its message.
+    pub hold: Span,
+    /// How old a command to the body may be.
+    pub stale: Span,
+}
+
+/// What processes outside the daemon may do; the same user is always required.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Outsiders {
+    /// Ports that may be tapped: inputs may be suppressed, outputs inhibited.
+    pub tap: Vec<PortName>,
+    /// Most layers attached at once.
+    pub layers_max: usize,
+    /// Highest level an attached layer may claim.
+    pub level_max: u8,
+    /// Longest time constant of an attached tap.
+    pub time_constant_max: Span,
+}

@@ -1,0 +1,128 @@
+//! The directory: what a running creature shows to a layer that wants to join it.
+//!
+//! Must never say more than a newcomer needs to be checked: ports, levels and what is open.
+
+use serde::{Deserialize, Serialize};
+
+use super::creature::{BODY, Creature, PortName};
+use crate::clock::Span;
+use crate::message::Kind;
+
+/// A port of the creature.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Listed {
+    /// `module.port`.
+    pub name: String,
+    /// The kind of message.
+    pub kind: Kind,
+    /// Its unit, or empty.
+    pub unit: String,
+    /// The level of the layer; none for the body.
+    pub level: Option<u8>,
+    /// For outputs: who shares the wire's page (see `wire::iceoryx::service_of`).
+    #[serde(default)]
+    pub owner: String,
+    /// For outputs: which wire of that page.
+    #[serde(default)]
+    pub index: usize,
+}
+
+/// What a running creature shows.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Directory {
+    /// The creature's name.
+    pub creature: String,
+    /// Names of its layers.
+    pub layers: Vec<String>,
+    /// Every output port: the wires.
+    pub outputs: Vec<Listed>,
+    /// Every input port.
+    pub inputs: Vec<Listed>,
+    /// Ports that may be tapped from outside.
+    pub open_taps: Vec<String>,
+    /// Outputs that are part of the halt channel.
+    pub reflexes: Vec<String>,
+    /// Highest level a layer may claim.
+    pub level_max: u8,
+    /// Longest time constant of a tap, in nanoseconds.
+    pub time_constant_max: Span,
+}
+
+impl Directory {
+    /// The directory of a checked creature whose wires are all shared by `owner`, in the order of
+    /// [`output_ports`].
+    pub fn of(creature: &Creature, owner: &str) -> Directory {
+        let listed = |(name, port, level): (PortName, &super::Port, Option<u8>)| Listed {
+            name: name.to_string(),
+            kind: port.kind,
+            unit: port.unit.into(),
+            level,
+            owner: String::new(),
+            index: 0,
+        };
+        let mut outputs: Vec<Listed> = output_ports(creature).map(listed).collect();
+        for (index, output) in outputs.iter_mut().enumerate() {
+            output.owner = owner.into();
+            output.index = index;
+        }
+        Directory {
+            creature: creature.name.clone(),
+            layers: creature.layers.iter().map(|l| l.name.clone()).collect(),
+            outputs,
+            inputs: input_ports(creature).map(listed).collect(),
+            open_taps: creature.outsiders.tap.iter().map(PortName::to_string).collect(),
+            reflexes: creature.halt.reflexes.iter().map(PortName::to_string).collect(),
+            level_max: creature.outsiders.level_max,
+            time_constant_max: creature.outsiders.time_constant_max,
+        }
+    }
+
+    /// Whether a module of that name is there.
+    pub fn has_module(&self, name: &str) -> bool {
+        self.module_names().any(|m| m == name)
+    }
+
+    /// Names of the modules that have ports, with repetitions.
+    pub fn module_names(&self) -> impl Iterator<Item = String> {
+        let ports = self.outputs.iter().chain(&self.inputs);
+        ports.filter_map(|p| p.name.split_once('.').map(|(module, _)| module.to_string()))
+    }
+}
+
+/// Every output port of a creature, in the order in which wires are numbered: the body's sensors, then
+/// modules layer by layer.
+pub fn output_ports(c: &Creature) -> impl Iterator<Item = (PortName, &'static super::Port, Option<u8>)> {
+    ports(c, |d| d.outputs)
+}
+
+/// Every input port of a creature in the same order, without reset lines.
+pub fn input_ports(c: &Creature) -> impl Iterator<Item = (PortName, &'static super::Port, Option<u8>)> {
+    ports(c, |d| d.inputs)
+}
+
+fn ports(
+    creature: &Creature,
+    of: fn(&super::Declaration) -> &'static [super::Port],
+) -> impl Iterator<Item = (PortName, &'static super::Port, Option<u8>)> {
+    let body = creature
+        .body
+        .iter()
+        .map(|b| (BODY.to_string(), b.declaration, None));
+    let modules = creature.layers.iter().flat_map(|l| {
+        l.modules
+            .iter()
+            .map(|m| (m.name.clone(), m.declaration, Some(l.level)))
+    });
+    body.chain(modules).flat_map(move |(module, declaration, level)| {
+        of(declaration).iter().map(move |port| {
+            (
+                PortName {
+                    module: module.clone(),
+                    port: port.name.into(),
+                },
+                port,
+                level,
+            )
+        })
+    })
+}

@@ -1,0 +1,264 @@
+//! Reading a TOML document with every value's place in the file, and noting all that is wrong with it.
+//!
+//! Must never interpret: it knows tables, strings and times, not layers.
+
+use std::borrow::Cow;
+use std::ops::Range;
+
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+use super::diagnostic::{Findings, Source, one_of};
+use crate::clock::Span;
+
+/// Longest file that is read; a creature of 10,000 modules has about 1 MiB.
+pub const FILE_BYTES_MAX: usize = 4 << 20;
+
+/// A value with its place.
+#[derive(Clone, Debug)]
+pub struct Placed<T> {
+    /// The value.
+    pub value: T,
+    /// Where it stands.
+    pub at: Range<usize>,
+}
+
+/// The root table of `source`; syntax errors go to `findings`.
+pub fn parse<'s>(source: &'s Source, findings: &mut Findings) -> Option<Spanned<DeTable<'s>>> {
+    if source.text.len() > FILE_BYTES_MAX {
+        findings.error(
+            0..0,
+            "the file is too long",
+            format!("expected at most {FILE_BYTES_MAX} bytes"),
+        );
+        return None;
+    }
+    let (table, errors) = DeTable::parse_recoverable(&source.text);
+    for error in &errors {
+        let at = error.span().unwrap_or(0..0);
+        findings.error(
+            at,
+            error.message().replace('\n', "; "),
+            "expected TOML (https://toml.io)",
+        );
+    }
+    Some(table)
+}
+
+/// A table being read: keys are taken out one by one, what is left at the end is unknown.
+pub struct Keys<'t, 's> {
+    table: &'t DeTable<'s>,
+    at: Range<usize>,
+    what: Cow<'static, str>,
+    known: Vec<&'static str>,
+}
+
+impl<'t, 's> Keys<'t, 's> {
+    /// Reads `table`, which stands at `at` and is called `what` in errors.
+    pub fn new(table: &'t DeTable<'s>, at: Range<usize>, what: impl Into<Cow<'static, str>>) -> Self {
+        Keys {
+            table,
+            at,
+            what: what.into(),
+            known: Vec::new(),
+        }
+    }
+
+    /// Where the table stands.
+    pub fn at(&self) -> Range<usize> {
+        self.at.clone()
+    }
+
+    /// Whether `key` is given.
+    pub fn has(&self, key: &str) -> bool {
+        self.table.iter().any(|(k, _)| k.get_ref() == key)
+    }
+
+    /// The value of `key`.
+    pub fn take(&mut self, key: &'static str) -> Option<&'t Spanned<DeValue<'s>>> {
+        self.known.push(key);
+        self.table
+            .iter()
+            .find(|(k, _)| k.get_ref() == key)
+            .map(|(_, v)| v)
+    }
+
+    /// The value of `key`, which must be there.
+    pub fn need(&mut self, key: &'static str, findings: &mut Findings) -> Option<&'t Spanned<DeValue<'s>>> {
+        let found = self.take(key);
+        if found.is_none() {
+            let message = format!("{} has no {key:?}", self.what);
+            findings.error(self.at(), message, format!("add {key} = ..."));
+        }
+        found
+    }
+
+    /// Notes every key that was not asked for.
+    pub fn finish(self, findings: &mut Findings) {
+        for (key, _) in self.table {
+            if !self.known.contains(&key.get_ref().as_ref()) {
+                let help = one_of("key", key.get_ref(), self.known.iter().copied());
+                findings.error(
+                    key.span(),
+                    format!("unknown key {:?} in {}", key.get_ref(), self.what),
+                    help,
+                );
+            }
+        }
+    }
+}
+
+fn wrong(value: &Spanned<DeValue<'_>>, expected: &str, findings: &mut Findings) {
+    let message = format!("{} found", a(value.get_ref().type_str()));
+    findings.error(value.span(), message, format!("expected {expected}"));
+}
+
+fn a(noun: &str) -> String {
+    let article = if noun.starts_with(['a', 'e', 'i', 'o', 'u']) {
+        "an"
+    } else {
+        "a"
+    };
+    format!("{article} {noun}")
+}
+
+/// A string.
+pub fn text(value: &Spanned<DeValue<'_>>, expected: &str, findings: &mut Findings) -> Option<Placed<String>> {
+    match value.get_ref() {
+        DeValue::String(s) => Some(Placed {
+            value: s.to_string(),
+            at: value.span(),
+        }),
+        _ => {
+            wrong(value, expected, findings);
+            None
+        }
+    }
+}
+
+/// One of some words.
+pub fn word(
+    value: &Spanned<DeValue<'_>>,
+    what: &str,
+    words: &[&str],
+    findings: &mut Findings,
+) -> Option<usize> {
+    let given = text(value, &one_of(what, "", words.iter().copied()), findings)?;
+    let found = words.iter().position(|w| *w == given.value);
+    if found.is_none() {
+        let help = one_of(what, &given.value, words.iter().copied());
+        findings.error(given.at, format!("unknown {what} {:?}", given.value), help);
+    }
+    found
+}
+
+/// A whole number from `low` to `high`.
+pub fn whole(value: &Spanned<DeValue<'_>>, low: u64, high: u64, findings: &mut Findings) -> Option<u64> {
+    let expected = format!("a whole number from {low} to {high}");
+    match value.get_ref() {
+        DeValue::Integer(n) => match u64::from_str_radix(&n.as_str().replace('_', ""), n.radix()) {
+            Ok(n) if (low..=high).contains(&n) => Some(n),
+            _ => {
+                let message = format!("{} is out of range", n.as_str());
+                findings.error(value.span(), message, format!("expected {expected}"));
+                None
+            }
+        },
+        _ => {
+            wrong(value, &expected, findings);
+            None
+        }
+    }
+}
+
+/// A finite number from `low` to `high`.
+pub fn number(value: &Spanned<DeValue<'_>>, low: f64, high: f64, findings: &mut Findings) -> Option<f64> {
+    let parsed = match value.get_ref() {
+        DeValue::Integer(n) => i64::from_str_radix(&n.as_str().replace('_', ""), n.radix())
+            .ok()
+            .map(|n| n as f64),
+        DeValue::Float(n) => n.as_str().replace('_', "").parse::<f64>().ok(),
+        _ => {
+            wrong(value, "a number", findings);
+            return None;
+        }
+    };
+    match parsed {
+        Some(n) if n.is_finite() && (low..=high).contains(&n) => Some(n),
+        _ => {
+            findings.error(
+                value.span(),
+                "the number is out of range",
+                number_range(low, high),
+            );
+            None
+        }
+    }
+}
+
+fn number_range(low: f64, high: f64) -> String {
+    match (low > f64::MIN, high < f64::MAX) {
+        (true, true) => format!("expected a number from {low} to {high}"),
+        (true, false) => format!("expected a number of at least {low}"),
+        (false, true) => format!("expected a number of at most {high}"),
+        (false, false) => "expected a finite number".into(),
+    }
+}
+
+/// `true` or `false`.
+pub fn bit(value: &Spanned<DeValue<'_>>, findings: &mut Findings) -> Option<bool> {
+    match value.get_ref() {
+        DeValue::Boolean(b) => Some(*b),
+        _ => {
+            wrong(value, "true or false", findings);
+            None
+        }
+    }
+}
+
+/// A time with a unit; longer than zero if `positive`.
+pub fn span(value: &Spanned<DeValue<'_>>, positive: bool, findings: &mut Findings) -> Option<Span> {
+    let given = text(value, "a time with a unit, such as \"20ms\"", findings)?;
+    match Span::parse(&given.value) {
+        Ok(Span::ZERO) if positive => {
+            findings.error(given.at, "the time is zero", "expected a time longer than zero");
+            None
+        }
+        Ok(span) => Some(span),
+        Err(help) => {
+            findings.error(given.at, format!("{:?} is not a time", given.value), help);
+            None
+        }
+    }
+}
+
+/// The elements of an array.
+pub fn array<'t, 's>(
+    value: &'t Spanned<DeValue<'s>>,
+    expected: &str,
+    findings: &mut Findings,
+) -> Vec<&'t Spanned<DeValue<'s>>> {
+    match value.get_ref() {
+        DeValue::Array(items) => items.iter().collect(),
+        _ => {
+            wrong(value, expected, findings);
+            Vec::new()
+        }
+    }
+}
+
+/// A table.
+pub fn table<'t, 's>(
+    value: &'t Spanned<DeValue<'s>>,
+    what: impl Into<Cow<'static, str>>,
+    findings: &mut Findings,
+) -> Option<Keys<'t, 's>> {
+    let what = what.into();
+    match value.get_ref() {
+        DeValue::Table(t) => Some(Keys::new(t, value.span(), what)),
+        _ => {
+            wrong(value, &format!("a table: {what}"), findings);
+            None
+        }
+    }
+}

@@ -1,0 +1,21 @@
+//! Wiring: from a creature file or a layer's manifest to a creature that is known to be sound.
+//!
+//! ```text
+//!  file ──► document (TOML with places) ──► read (parts) ──► check (names, types, levels) ──► Creature
+//!                         └──────────────── findings: every error at once ───────┘
+//! ```
+//!
+//! Must never run anything: the catalogue says what a module looks like, not what it does.
+
+pub mod catalog;
+pub mod check;
+pub mod creature;
+pub mod diagnostic;
+pub mod directory;
+pub mod document;
+mod read;
+
+pub use catalog::{Catalog, Declaration, Parameter, Port, Setting, Takes};
+pub use creature::{BODY, Creature, PortName};
+pub use diagnostic::{Rejected, Source};
+pub use directory::Directory;

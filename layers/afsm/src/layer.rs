@@ -1,0 +1,235 @@
+//! A running layer: its modules, their registers and outlets, stepped together once a beat.
+//!
+//! Must never allocate, lock or wait in [`RunningLayer::step`] and [`RunningLayer::commit`], nor let the
+//! order of modules within a beat matter: every module sees what was on the wires before the beat, and all
+//! messages of the beat are written at its end.
+//!
+//! ```text
+//!   beat:  commands ─► gather registers, step modules (any order) ─► commit outlets, stamped together
+//! ```
+
+use std::ops::Range;
+
+use ipc::clock::Time;
+use ipc::wire::{Outlet, Register, TapEnd};
+use rtrb::{Consumer, Producer};
+
+use crate::kind::ModuleKind;
+use crate::module::{Beat, Module};
+
+/// A change to a running layer's taps, made by a thread that is not real-time.
+#[derive(Debug)]
+pub enum Command {
+    /// Joins a suppressor to the layer's n-th input.
+    Suppress(usize, TapEnd),
+    /// Joins an inhibitor to the layer's n-th output.
+    Inhibit(usize, TapEnd),
+    /// Tells all taps of a plugged layer to go.
+    Release(ipc::wire::Plug),
+}
+
+/// Most commands waiting for a layer, and taps waiting to be taken back: those of a newcomer that taps
+/// every port it may.
+pub const COMMANDS_MAX: usize = 256;
+
+/// The two ends of a layer's command channel, for the thread that is not real-time.
+#[derive(Debug)]
+pub struct Hand {
+    /// Commands to the layer, taken up at its next beat.
+    pub commands: Producer<Command>,
+    /// Taps that the layer has let go, to be dropped here.
+    pub returned: Consumer<TapEnd>,
+}
+
+/// A module as it stands in a layer.
+struct Seat {
+    name: String,
+    machine: Box<dyn Module>,
+    inputs: Range<usize>,
+    outputs: Range<usize>,
+    /// Whether its last input, the reset line, is connected.
+    reset: bool,
+}
+
+/// A layer that can be stepped.
+pub struct RunningLayer {
+    seats: Vec<Seat>,
+    order: Vec<usize>,
+    registers: Vec<Register>,
+    outlets: Vec<Outlet>,
+    commands: Consumer<Command>,
+    returned: Producer<TapEnd>,
+}
+
+impl std::fmt::Debug for RunningLayer {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "RunningLayer({} modules)", self.seats.len())
+    }
+}
+
+impl RunningLayer {
+    /// A layer without modules, and the hand that reaches into it.
+    pub fn new() -> (RunningLayer, Hand) {
+        let (command_in, command_out) = rtrb::RingBuffer::new(COMMANDS_MAX);
+        let (return_in, return_out) = rtrb::RingBuffer::new(COMMANDS_MAX);
+        let layer = RunningLayer {
+            seats: Vec::new(),
+            order: Vec::new(),
+            registers: Vec::new(),
+            outlets: Vec::new(),
+            commands: command_out,
+            returned: return_in,
+        };
+        (
+            layer,
+            Hand {
+                commands: command_in,
+                returned: return_out,
+            },
+        )
+    }
+
+    /// Seats a module of `kind`: `registers` in the order of its declaration with the reset line last,
+    /// `outlets` in the order of its declaration.
+    ///
+    /// # Panics
+    /// When the numbers of ports are not those of the declaration.
+    pub fn seat(
+        &mut self,
+        name: &str,
+        kind: &ModuleKind,
+        machine: Box<dyn Module>,
+        registers: Vec<Register>,
+        outlets: Vec<Outlet>,
+        reset: bool,
+    ) {
+        assert_eq!(
+            registers.len(),
+            kind.declaration.inputs.len() + 1,
+            "inputs of {name}"
+        );
+        assert_eq!(outlets.len(), kind.declaration.outputs.len(), "outputs of {name}");
+        let inputs = self.registers.len()..self.registers.len() + registers.len();
+        let outputs = self.outlets.len()..self.outlets.len() + outlets.len();
+        self.registers.extend(registers);
+        self.outlets.extend(outlets);
+        self.order.push(self.seats.len());
+        self.seats.push(Seat {
+            name: name.into(),
+            machine,
+            inputs,
+            outputs,
+            reset,
+        });
+    }
+
+    /// Steps the modules in another order from now on: `order` holds every index of a module once.
+    ///
+    /// # Panics
+    /// When it doesn't.
+    pub fn set_order(&mut self, order: Vec<usize>) {
+        let mut sorted = order.clone();
+        sorted.sort_unstable();
+        assert!(
+            sorted.into_iter().eq(0..self.seats.len()),
+            "an order names every module once"
+        );
+        self.order = order;
+    }
+
+    /// How many modules there are.
+    pub fn len(&self) -> usize {
+        self.seats.len()
+    }
+
+    /// Whether there is no module.
+    pub fn is_empty(&self) -> bool {
+        self.seats.is_empty()
+    }
+
+    /// The state of the module called `name`.
+    pub fn state_of(&self, name: &str) -> Option<&'static str> {
+        self.seats
+            .iter()
+            .find(|s| s.name == name)
+            .map(|s| s.machine.state())
+    }
+
+    /// First half of a beat: takes up commands, looks at every register, steps every module.
+    pub fn step(&mut self, now: Time) {
+        while let Ok(command) = self.commands.pop() {
+            self.obey(command);
+        }
+        for &index in &self.order {
+            let Seat {
+                machine,
+                inputs,
+                outputs,
+                reset,
+                ..
+            } = &mut self.seats[index];
+            let registers = &mut self.registers[inputs.clone()];
+            let (reset_line, own) = registers.split_last_mut().expect("every module has a reset line");
+            for register in own.iter_mut() {
+                register.gather(now, |end| give_back(&mut self.returned, end));
+            }
+            if *reset {
+                reset_line.gather(now, |end| give_back(&mut self.returned, end));
+                if reset_line.arrived() {
+                    machine.reset();
+                    own.iter_mut().for_each(Register::clear);
+                    continue;
+                }
+            }
+            machine.step(&mut Beat {
+                now,
+                inputs: own,
+                outputs: &mut self.outlets[outputs.clone()],
+            });
+        }
+    }
+
+    /// Second half of a beat: writes what was emitted, stamped `now`, unless inhibited.
+    pub fn commit(&mut self, now: Time) {
+        for outlet in &mut self.outlets {
+            outlet.commit(now, |end| give_back(&mut self.returned, end));
+        }
+    }
+
+    fn obey(&mut self, command: Command) {
+        let refused = match command {
+            Command::Suppress(input, end) if input < self.registers.len() => {
+                self.connect_reset(input);
+                self.registers[input].suppress(end)
+            }
+            Command::Suppress(_, end) => Err(end),
+            Command::Inhibit(output, end) => match self.outlets.get_mut(output) {
+                Some(outlet) => outlet.inhibit(end),
+                None => Err(end),
+            },
+            Command::Release(plug) => {
+                self.registers.iter_mut().for_each(|r| r.release(plug));
+                self.outlets.iter_mut().for_each(|o| o.release(plug));
+                Ok(())
+            }
+        };
+        if let Err(end) = refused {
+            give_back(&mut self.returned, end);
+        }
+    }
+
+    /// A tap on a reset line connects it.
+    fn connect_reset(&mut self, input: usize) {
+        if let Some(seat) = self.seats.iter_mut().find(|s| s.inputs.end == input + 1) {
+            seat.reset = true;
+        }
+    }
+}
+
+/// Hands a tap to the thread that may drop it. The ring has room for every tap there can be, so the tap is
+/// dropped here only if the other side is gone for good.
+fn give_back(returned: &mut Producer<TapEnd>, end: TapEnd) {
+    if let Err(rtrb::PushError::Full(end)) = returned.push(end) {
+        std::mem::forget(end);
+    }
+}
