@@ -174,7 +174,6 @@ impl Plugs {
             time_constant: tap.time_constant,
             level: plug.level,
             plug: number,
-            id: index as u32,
             gauge: gauge.clone(),
         };
         let (places, command): (_, fn(usize, TapEnd) -> Command) = match tap.how {

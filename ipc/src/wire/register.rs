@@ -37,8 +37,6 @@ pub struct TapEnd {
     pub level: u8,
     /// Whose it is.
     pub plug: Plug,
-    /// Its number among the taps of its owner, for those who watch.
-    pub id: u32,
     /// Where what happens at it is counted, for those who watch.
     pub gauge: Arc<TapGauge>,
 }
@@ -144,7 +142,6 @@ impl Joined {
 
     pub(super) fn state(&self) -> TapState {
         TapState {
-            id: self.end.id,
             window: self.window,
             counts: self.end.gauge.counts(),
         }
@@ -265,7 +262,7 @@ impl Register {
             };
             if passes {
                 if fresh {
-                    count(&self.taps[k].end.gauge.delivered);
+                    self.taps[k].take_effect();
                 }
                 if newest.is_none_or(|(stamp, _)| window.stamp >= stamp) {
                     newest = Some((window.stamp, words));
@@ -364,8 +361,6 @@ impl Register {
 /// A tap as it stands, for those who watch.
 #[derive(Clone, Copy, Debug)]
 pub struct TapState {
-    /// The tap's number among those of its owner.
-    pub id: u32,
     /// Its newest message's window.
     pub window: Option<Window>,
     /// What was counted.

@@ -101,13 +101,12 @@ pub fn join(
     mut place: impl FnMut(TapEnd) -> Result<(), TapEnd>,
 ) -> bool {
     let mut any = false;
-    for (id, filed) in taps.iter().enumerate().filter(|(_, t)| t.tap.how == how && t.tap.to == *name) {
+    for filed in taps.iter().filter(|t| t.tap.how == how && t.tap.to == *name) {
         let end = TapEnd {
             reader: wires.reader(&filed.tap.from).expect("a checked tap has a source"),
             time_constant: filed.tap.time_constant,
             level: filed.level,
             plug: 0,
-            id: id as u32,
             gauge: filed.gauge.clone(),
         };
         place(end).expect("the checker keeps taps within their bound");
