@@ -2,5 +2,10 @@
 //!
 //! The system of Gantchev 2001, chapters 2 and 4, on the arbitration of the `backplane` crate.
 
+pub mod arena;
+pub mod command;
+pub mod evolve;
+pub mod grid;
 pub mod ootland;
+pub mod report;
 pub mod strategies;

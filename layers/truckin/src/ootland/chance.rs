@@ -2,7 +2,7 @@
 //!
 //! Nothing else in this crate draws a random number, so a game repeats to the bit from its seed.
 
-use rand_core::Rng;
+use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg32;
 
 /// A stream of random numbers with a name of its own.
@@ -10,9 +10,11 @@ use rand_pcg::Pcg32;
 pub struct Chance(Pcg32);
 
 impl Chance {
-    /// The stream `stream` of `seed`. Different streams of one seed are independent of each other.
+    /// The stream `stream` of `seed`. The stream also moves the starting point: neighbouring streams
+    /// of a PCG that start from one state begin alike.
     pub fn new(seed: u64, stream: u64) -> Self {
-        Self(Pcg32::new(seed, stream))
+        let apart = Pcg32::seed_from_u64(stream).next_u64();
+        Self(Pcg32::new(seed.wrapping_add(apart), stream))
     }
 
     /// A new stream that depends on this one's state and on `party`.

@@ -161,7 +161,10 @@ impl Controller<'_> {
         if steps == 0 {
             return Err(Refusal::NothingAsked);
         }
-        let corner = self.grid().after(self.book.corner, direction, steps).ok_or(Refusal::NoRoad)?;
+        let corner = self
+            .grid()
+            .after(self.book.corner, direction, steps)
+            .ok_or(Refusal::NoRoad)?;
         let minutes = i32::from(steps) * STEP_MINUTES;
         let gas = i32::from(steps) * STEP_MILLILITRES;
         self.screen_time(minutes)?;
@@ -215,7 +218,12 @@ impl Controller<'_> {
                 ledger.gas_sold_millilitres += i64::from(units) * i64::from(LITRE_MILLILITRES);
             }
         }
-        Ok(Outcome::Bought { commodity, asked, units, cents })
+        Ok(Outcome::Bought {
+            commodity,
+            asked,
+            units,
+            cents,
+        })
     }
 
     pub(super) fn sell(&mut self, offered: i32) -> Result<Outcome, Refusal> {
@@ -240,6 +248,11 @@ impl Controller<'_> {
                 ledger.items_consumed += i64::from(units);
             }
         }
-        Ok(Outcome::Sold { commodity, offered, units, cents })
+        Ok(Outcome::Sold {
+            commodity,
+            offered,
+            units,
+            cents,
+        })
     }
 }

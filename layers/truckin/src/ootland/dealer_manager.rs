@@ -44,7 +44,10 @@ pub struct Manager {
 impl Manager {
     /// Opens the books.
     pub fn new(opening: Opening) -> Self {
-        Self { books: opening, wanted_items: 0 }
+        Self {
+            books: opening,
+            wanted_items: 0,
+        }
     }
 
     /// What the dealer advertises now.

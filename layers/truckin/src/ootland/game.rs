@@ -59,8 +59,10 @@ impl Game {
         let land = world.open(&mut chance.fork(1));
         let mut cabins = chance.fork(2);
         let grid = land.grid();
-        let trucks: Vec<Truck> =
-            chromosomes.iter().map(|chromosome| Truck::new(*chromosome, grid, &mut cabins)).collect();
+        let trucks: Vec<Truck> = chromosomes
+            .iter()
+            .map(|chromosome| Truck::new(*chromosome, grid, &mut cabins))
+            .collect();
         Self::of_parts(land, trucks, slots, chance)
     }
 
@@ -73,10 +75,18 @@ impl Game {
         assert!(slots <= SLOTS_MAX, "{slots} slots");
         let mut starts = chance.fork(3);
         let corners = land.grid().corners() as u32;
-        let books: Vec<TruckBook> =
-            trucks.iter().map(|_| TruckBook::new(Corner(starts.below(corners) as u16))).collect();
+        let books: Vec<TruckBook> = trucks
+            .iter()
+            .map(|_| TruckBook::new(Corner(starts.below(corners) as u16)))
+            .collect();
         let referee = Referee::new(chance.fork(4), slots, trucks.len());
-        let mut game = Self { land, trucks, books, referee, opening: Holdings::default() };
+        let mut game = Self {
+            land,
+            trucks,
+            books,
+            referee,
+            opening: Holdings::default(),
+        };
         game.opening = game.holdings();
         game
     }
@@ -114,7 +124,8 @@ impl Game {
     /// Plays one slot and tells `watch` of every turn.
     pub fn play_slot_watched(&mut self, watch: &mut impl FnMut(Turn)) {
         if !self.is_over() {
-            self.referee.play_slot(&mut self.land, &mut self.trucks, &mut self.books, watch);
+            self.referee
+                .play_slot(&mut self.land, &mut self.trucks, &mut self.books, watch);
         }
     }
 
@@ -144,7 +155,11 @@ impl Game {
             .ledger
             .check(&self.opening, &self.holdings())
             .map_err(|wrong: LedgerFault| fault(wrong.to_string()))?;
-        match self.books.iter().position(|book| book.tank_millilitres > TANK_MILLILITRES) {
+        match self
+            .books
+            .iter()
+            .position(|book| book.tank_millilitres > TANK_MILLILITRES)
+        {
             Some(seat) => Err(fault(format!("the tank of truck {seat} holds more than it can"))),
             None => Ok(()),
         }

@@ -39,7 +39,12 @@ impl Land {
             .filter(|(_, stand)| stand.manager.kind() != Kind::Idle)
             .map(|(corner, _)| Corner(corner as u16))
             .collect();
-        Self { grid, stands, playing, ledger: Ledger::default() }
+        Self {
+            grid,
+            stands,
+            playing,
+            ledger: Ledger::default(),
+        }
     }
 
     /// The size of the country.
@@ -76,7 +81,10 @@ impl Land {
 
     /// What all dealers hold together.
     pub(crate) fn holdings(&self) -> Holdings {
-        let mut sum = Holdings { least: i64::MAX, ..Holdings::default() };
+        let mut sum = Holdings {
+            least: i64::MAX,
+            ..Holdings::default()
+        };
         for corner in &self.playing {
             let manager = self.manager(*corner);
             let (crates, items) = (i64::from(manager.crates()), i64::from(manager.items()));

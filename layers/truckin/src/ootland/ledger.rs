@@ -58,7 +58,11 @@ pub struct LedgerFault {
 
 impl fmt::Display for LedgerFault {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(out, "{}: {} in the books, {} in the country", self.what, self.expected, self.found)
+        write!(
+            out,
+            "{}: {} in the books, {} in the country",
+            self.what, self.expected, self.found
+        )
     }
 }
 
@@ -68,14 +72,17 @@ impl Ledger {
     /// # Errors
     /// The first sum that does not come out to the cent, item and millilitre.
     pub fn check(&self, start: &Holdings, now: &Holdings) -> Result<(), LedgerFault> {
-        let expected_cents = start.cents + self.consumers_paid_cents
-            - self.producers_took_cents
-            - self.telephone_took_cents;
+        let expected_cents =
+            start.cents + self.consumers_paid_cents - self.producers_took_cents - self.telephone_took_cents;
         let expected_items =
             start.items + self.crates_unpacked * i64::from(ITEMS_PER_CRATE) - self.items_consumed;
         let sums = [
             ("cents", expected_cents, now.cents),
-            ("crates", start.crates + self.crates_made - self.crates_unpacked, now.crates),
+            (
+                "crates",
+                start.crates + self.crates_made - self.crates_unpacked,
+                now.crates,
+            ),
             ("items", expected_items, now.items),
             (
                 "millilitres of gas",
@@ -85,7 +92,11 @@ impl Ledger {
             ("the least anybody holds", now.least.max(0), now.least),
         ];
         match sums.into_iter().find(|(_, expected, found)| expected != found) {
-            Some((what, expected, found)) => Err(LedgerFault { what, expected, found }),
+            Some((what, expected, found)) => Err(LedgerFault {
+                what,
+                expected,
+                found,
+            }),
             None => Ok(()),
         }
     }

@@ -27,7 +27,11 @@ pub struct Referee {
 impl Referee {
     /// A referee for a game of so many slots and trucks.
     pub fn new(chance: Chance, slots: u32, trucks: usize) -> Self {
-        Self { chance, clock: Clock { slot: 0, slots }, order: (0..trucks as u16).collect() }
+        Self {
+            chance,
+            clock: Clock { slot: 0, slots },
+            order: (0..trucks as u16).collect(),
+        }
     }
 
     /// What time it is.

@@ -25,13 +25,23 @@ impl Truck {
     pub fn new(chromosome: Chromosome, grid: Grid, chance: &mut Chance) -> Self {
         let layers = strategies::build(&chromosome, grid, chance);
         let backplane = CommunicationBackplane::new(layers.len());
-        Self { chromosome, layers, backplane, last_turn: None }
+        Self {
+            chromosome,
+            layers,
+            backplane,
+            last_turn: None,
+        }
     }
 
     /// A truck of layers that are in no registry, for trying them out; `chromosome` is only its name.
     pub fn of_layers(chromosome: Chromosome, layers: Vec<TruckLayer>) -> Self {
         let backplane = CommunicationBackplane::new(layers.len());
-        Self { chromosome, layers, backplane, last_turn: None }
+        Self {
+            chromosome,
+            layers,
+            backplane,
+            last_turn: None,
+        }
     }
 
     /// The truck's name.

@@ -108,7 +108,9 @@ impl GameView {
             avenues: grid.avenues,
             streets: grid.streets,
             dealers: trading.map(|corner| DealerView::of(game, corner)).collect(),
-            trucks: (0..game.trucks().len()).map(|seat| TruckView::of(game, seat)).collect(),
+            trucks: (0..game.trucks().len())
+                .map(|seat| TruckView::of(game, seat))
+                .collect(),
         }
     }
 }
@@ -139,7 +141,10 @@ impl TruckView {
         let selected = backplane.selected();
         let busy_minutes = (-book.left_minutes).max(0);
         let drove = selected.as_ref().is_some_and(|selected| {
-            selected.outcomes.iter().any(|outcome| matches!(outcome, Outcome::Moved { .. }))
+            selected
+                .outcomes
+                .iter()
+                .any(|outcome| matches!(outcome, Outcome::Moved { .. }))
         });
         let layers = SLOTS.iter().zip(truck.chromosome().genes()).enumerate();
         Self {
@@ -148,7 +153,11 @@ impl TruckView {
             avenue,
             street,
             busy_minutes,
-            steps_to_go: if drove { (busy_minutes + STEP_MINUTES - 1) / STEP_MINUTES } else { 0 },
+            steps_to_go: if drove {
+                (busy_minutes + STEP_MINUTES - 1) / STEP_MINUTES
+            } else {
+                0
+            },
             capital_cents: book.capital_cents,
             tank_millilitres: book.tank_millilitres,
             crates: book.crates,
@@ -167,7 +176,11 @@ impl TruckView {
                 })
                 .collect(),
             outcomes: selected.map_or_else(Vec::new, |selected| {
-                selected.outcomes.iter().map(|outcome| format!("{outcome:?}")).collect()
+                selected
+                    .outcomes
+                    .iter()
+                    .map(|outcome| format!("{outcome:?}"))
+                    .collect()
             }),
         }
     }

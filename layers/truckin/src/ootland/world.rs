@@ -88,7 +88,10 @@ impl Default for World {
     /// game, prices as in the source's examples.
     fn default() -> Self {
         Self {
-            grid: Grid { avenues: 10, streets: 10 },
+            grid: Grid {
+                avenues: 10,
+                streets: 10,
+            },
             economy: Economy::default(),
             dealers: Vec::new(),
             scattered: vec![
@@ -111,20 +114,30 @@ impl World {
         for fixed in &self.dealers {
             stands[usize::from(fixed.corner.0)] = Some(self.stand(fixed, chance));
         }
-        let mut free: Vec<u16> =
-            (0..stands.len() as u16).filter(|corner| stands[usize::from(*corner)].is_none()).collect();
+        let mut free: Vec<u16> = (0..stands.len() as u16)
+            .filter(|corner| stands[usize::from(*corner)].is_none())
+            .collect();
         chance.shuffle(&mut free);
         for &(kind, count) in &self.scattered {
             for _ in 0..count {
                 let corner = free.pop().expect("a corner for every dealer");
-                let fixed =
-                    FixedDealer { corner: Corner(corner), kind, buying_cents: None, selling_cents: None };
+                let fixed = FixedDealer {
+                    corner: Corner(corner),
+                    kind,
+                    buying_cents: None,
+                    selling_cents: None,
+                };
                 stands[usize::from(corner)] = Some(self.stand(&fixed, chance));
             }
         }
         let idle = |corner: usize| {
             let corner = Corner(corner as u16);
-            FixedDealer { corner, kind: Kind::Idle, buying_cents: None, selling_cents: None }
+            FixedDealer {
+                corner,
+                kind: Kind::Idle,
+                buying_cents: None,
+                selling_cents: None,
+            }
         };
         let stands = stands
             .into_iter()
@@ -137,16 +150,29 @@ impl World {
     /// Draws one dealer and opens its books.
     fn stand(&self, fixed: &FixedDealer, chance: &mut Chance) -> Stand {
         let economy = &self.economy;
-        let mut card = Card { kind: fixed.kind, buying_cents: 0, selling_cents: 0 };
-        let mut opening =
-            Opening { card, capital_cents: 0, crates: 0, items: 0, crate_storage: 0, item_storage: 0 };
+        let mut card = Card {
+            kind: fixed.kind,
+            buying_cents: 0,
+            selling_cents: 0,
+        };
+        let mut opening = Opening {
+            card,
+            capital_cents: 0,
+            crates: 0,
+            items: 0,
+            crate_storage: 0,
+            item_storage: 0,
+        };
         let dealer = match fixed.kind {
             Kind::Idle => Dealer::Idle(Idle),
             Kind::Producer => {
                 card.selling_cents = economy.crate_cents;
                 opening.crate_storage = economy.yard_crates;
                 opening.crates = economy.yard_crates / 2;
-                Dealer::Producer(Producer { crates_per_100_slots: economy.crates_per_100_slots, begun: 0 })
+                Dealer::Producer(Producer {
+                    crates_per_100_slots: economy.crates_per_100_slots,
+                    begun: 0,
+                })
             }
             Kind::Retailer => {
                 let (low, high) = economy.retailer_buying_cents;
@@ -158,12 +184,18 @@ impl World {
                 opening.item_storage = economy.retailer_items;
                 opening.items = economy.retailer_items / 4;
                 let until_prices = chance.below(12);
-                Dealer::Retailer(Retailer { until_prices, margin_cents: economy.retailer_margin_cents })
+                Dealer::Retailer(Retailer {
+                    until_prices,
+                    margin_cents: economy.retailer_margin_cents,
+                })
             }
             Kind::Consumer => {
                 card.buying_cents = economy.item_cents;
                 opening.item_storage = economy.wanted_items_max;
-                Dealer::Consumer(Consumer { items_per_100_slots: economy.items_per_100_slots, begun: 0 })
+                Dealer::Consumer(Consumer {
+                    items_per_100_slots: economy.items_per_100_slots,
+                    begun: 0,
+                })
             }
             Kind::GasStation => {
                 let (low, high) = economy.gas_cents;
@@ -174,6 +206,9 @@ impl World {
         card.buying_cents = fixed.buying_cents.unwrap_or(card.buying_cents);
         card.selling_cents = fixed.selling_cents.unwrap_or(card.selling_cents);
         opening.card = card;
-        Stand { manager: Manager::new(opening), dealer }
+        Stand {
+            manager: Manager::new(opening),
+            dealer,
+        }
     }
 }

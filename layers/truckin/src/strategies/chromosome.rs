@@ -36,7 +36,11 @@ impl std::error::Error for ChromosomeFault {}
 impl Chromosome {
     /// A chromosome of these genes; nothing when a slot has no such allele.
     pub fn new(genes: [u8; 4]) -> Option<Self> {
-        genes.iter().zip(kinds()).all(|(gene, kind)| *gene < kind).then_some(Self(genes))
+        genes
+            .iter()
+            .zip(kinds())
+            .all(|(gene, kind)| *gene < kind)
+            .then_some(Self(genes))
     }
 
     /// The genes, lowest layer first.
@@ -55,16 +59,26 @@ impl FromStr for Chromosome {
     type Err = ChromosomeFault;
 
     fn from_str(text: &str) -> Result<Self, ChromosomeFault> {
-        let fault = |place, expected| ChromosomeFault { text: text.to_owned(), place, expected };
+        let fault = |place, expected| ChromosomeFault {
+            text: text.to_owned(),
+            place,
+            expected,
+        };
         if text.chars().count() != SLOTS.len() {
             let expected = format!("{} digits, found {}", SLOTS.len(), text.chars().count());
             return Err(fault(None, expected));
         }
         let mut genes = [0; 4];
         for (index, (digit, slot)) in text.chars().zip(SLOTS).enumerate() {
-            let gene = digit.to_digit(10).filter(|gene| (*gene as usize) < slot.alleles.len());
+            let gene = digit
+                .to_digit(10)
+                .filter(|gene| (*gene as usize) < slot.alleles.len());
             let Some(gene) = gene else {
-                let expected = format!("0 to {} for {}, found '{digit}'", slot.alleles.len() - 1, slot.name);
+                let expected = format!(
+                    "0 to {} for {}, found '{digit}'",
+                    slot.alleles.len() - 1,
+                    slot.name
+                );
                 return Err(fault(Some(index + 1), expected));
             };
             genes[index] = gene as u8;

@@ -30,7 +30,10 @@ impl Counter {
     /// Notes what the last plan's trades came to.
     pub fn learn(&mut self, heard: &Feedback<'_, TruckCreature>, body: &Controller<'_>) {
         if self.here != Some(body.corner()) {
-            *self = Self { here: Some(body.corner()), ..Self::default() };
+            *self = Self {
+                here: Some(body.corner()),
+                ..Self::default()
+            };
         }
         let Some(selected) = heard.selected() else { return };
         let again = body.since_start_minutes() + ASK_AGAIN_MINUTES;
@@ -50,15 +53,27 @@ impl Counter {
         let units = (body.capital_cents() - keep_cents) / i64::from(card.selling_cents.max(1));
         let units = units.clamp(0, i64::from(i32::MAX)) as i32;
         let open = units > 0 && body.since_start_minutes() >= self.sells_again_minute;
-        open.then_some(Deal { commodity, units, cents: card.selling_cents })
+        open.then_some(Deal {
+            commodity,
+            units,
+            cents: card.selling_cents,
+        })
     }
 
     /// Goods on board that the dealer here buys.
     pub fn in_demand(&self, body: &Controller<'_>) -> Option<Deal> {
         let card = body.dealer_here();
         let commodity = card.kind.buys()?;
-        let units = if commodity == Commodity::Crates { body.crates() } else { body.items() };
+        let units = if commodity == Commodity::Crates {
+            body.crates()
+        } else {
+            body.items()
+        };
         let open = units > 0 && body.since_start_minutes() >= self.buys_again_minute;
-        open.then_some(Deal { commodity, units, cents: card.buying_cents })
+        open.then_some(Deal {
+            commodity,
+            units,
+            cents: card.buying_cents,
+        })
     }
 }

@@ -56,7 +56,12 @@ impl Notebook {
                 match *outcome {
                     Outcome::Moved { corner, .. } => at = corner,
                     Outcome::Told { corner, card } => self.note(corner, card),
-                    Outcome::Bought { commodity, asked, units, .. } if commodity != Commodity::Gas => {
+                    Outcome::Bought {
+                        commodity,
+                        asked,
+                        units,
+                        ..
+                    } if commodity != Commodity::Gas => {
                         self.short(at, units < asked, None);
                     }
                     Outcome::Sold { offered, units, .. } => self.short(at, units < offered, Some(units)),
@@ -76,7 +81,12 @@ impl Notebook {
                 note.minute = self.now;
             }
             empty => {
-                *empty = Some(Note { card, minute: self.now, short_minute: NEVER, took_units: 0 });
+                *empty = Some(Note {
+                    card,
+                    minute: self.now,
+                    short_minute: NEVER,
+                    took_units: 0,
+                });
                 self.of_kind[card.kind as usize].push(corner);
             }
         }
@@ -118,7 +128,10 @@ impl Notebook {
 
     /// The known dealer of a kind that is nearest by road, and the steps to it.
     pub fn nearest(&self, kind: Kind, from: Corner) -> Option<(Corner, i32)> {
-        let steps = self.known(kind).iter().map(|corner| (*corner, self.grid.steps(from, *corner)));
+        let steps = self
+            .known(kind)
+            .iter()
+            .map(|corner| (*corner, self.grid.steps(from, *corner)));
         steps.min_by_key(|(corner, steps)| (*steps, *corner))
     }
 

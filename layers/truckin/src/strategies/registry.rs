@@ -28,7 +28,12 @@ pub struct Allele {
 impl Allele {
     /// The idea, in the words of the first line of its file.
     pub fn idea(&self) -> &'static str {
-        self.source.lines().next().unwrap_or_default().trim_start_matches("//!").trim()
+        self.source
+            .lines()
+            .next()
+            .unwrap_or_default()
+            .trim_start_matches("//!")
+            .trim()
     }
 }
 
@@ -43,10 +48,22 @@ pub struct Slot {
 
 /// The slots of a truck, lowest layer first.
 pub const SLOTS: [Slot; 4] = [
-    Slot { name: "gas getting", alleles: gas::ALLELES },
-    Slot { name: "capital maintenance", alleles: capital::ALLELES },
-    Slot { name: "trading", alleles: trading::ALLELES },
-    Slot { name: "information gathering", alleles: information::ALLELES },
+    Slot {
+        name: "gas getting",
+        alleles: gas::ALLELES,
+    },
+    Slot {
+        name: "capital maintenance",
+        alleles: capital::ALLELES,
+    },
+    Slot {
+        name: "trading",
+        alleles: trading::ALLELES,
+    },
+    Slot {
+        name: "information gathering",
+        alleles: information::ALLELES,
+    },
 ];
 
 /// Lists the files of one slot, in the order of their digits: declares each and registers the type.
@@ -80,9 +97,7 @@ pub fn kinds() -> [u8; 4] {
 pub fn build(chromosome: &Chromosome, grid: Grid, chance: &mut Chance) -> Vec<TruckLayer> {
     let slots = SLOTS.iter().zip(chromosome.genes()).enumerate();
     slots
-        .map(|(layer, (slot, gene))| {
-            (slot.alleles[usize::from(gene)].build)(grid, chance.fork(layer as u64))
-        })
+        .map(|(layer, (slot, gene))| (slot.alleles[usize::from(gene)].build)(grid, chance.fork(layer as u64)))
         .collect()
 }
 

@@ -46,7 +46,13 @@ pub enum Kind {
 
 impl Kind {
     /// All five, in the order of their numbers.
-    pub const ALL: [Self; 5] = [Self::Idle, Self::Producer, Self::Retailer, Self::Consumer, Self::GasStation];
+    pub const ALL: [Self; 5] = [
+        Self::Idle,
+        Self::Producer,
+        Self::Retailer,
+        Self::Consumer,
+        Self::GasStation,
+    ];
 
     /// What such a dealer buys from trucks.
     pub fn buys(self) -> Option<Commodity> {

@@ -24,7 +24,12 @@ pub struct OnlyAtAProfit {
 impl MicroStrategy for OnlyAtAProfit {
     fn new(grid: Grid, _: Chance) -> Self {
         let (counter, notebook) = (Counter::default(), Notebook::new(grid));
-        Self { counter, notebook, paid_for_crate_cents: 0, paid_for_item_cents: 0 }
+        Self {
+            counter,
+            notebook,
+            paid_for_crate_cents: 0,
+            paid_for_item_cents: 0,
+        }
     }
 }
 
@@ -42,7 +47,12 @@ impl BehaviourLayer<TruckCreature> for OnlyAtAProfit {
         self.counter.learn(heard, body);
         self.notebook.learn(heard, body);
         for outcome in heard.selected().map_or(&[][..], |selected| selected.outcomes) {
-            if let Outcome::Bought { commodity, units, cents, .. } = *outcome
+            if let Outcome::Bought {
+                commodity,
+                units,
+                cents,
+                ..
+            } = *outcome
                 && units > 0
             {
                 let each = (cents / i64::from(units)) as i32;
@@ -56,7 +66,10 @@ impl BehaviourLayer<TruckCreature> for OnlyAtAProfit {
     }
 
     fn go(&mut self, proposal: &mut TruckProposal<'_>, body: &Controller<'_>) {
-        let in_demand = self.counter.in_demand(body).filter(|deal| deal.cents > self.paid(deal.commodity));
+        let in_demand = self
+            .counter
+            .in_demand(body)
+            .filter(|deal| deal.cents > self.paid(deal.commodity));
         if let Some(deal) = in_demand {
             add(proposal, TruckAction::Sell(deal.units));
             return;

@@ -26,7 +26,10 @@ pub struct OutByTheEnd {
 
 impl MicroStrategy for OutByTheEnd {
     fn new(grid: Grid, _: Chance) -> Self {
-        Self { counter: Counter::default(), notebook: Notebook::new(grid) }
+        Self {
+            counter: Counter::default(),
+            notebook: Notebook::new(grid),
+        }
     }
 }
 
@@ -41,7 +44,9 @@ impl BehaviourLayer<TruckCreature> for OutByTheEnd {
             add(proposal, TruckAction::Sell(deal.units));
             return;
         }
-        let Some(deal) = self.counter.on_sale(body, KEEP_CENTS) else { return };
+        let Some(deal) = self.counter.on_sale(body, KEEP_CENTS) else {
+            return;
+        };
         let Some((_, steps)) = self.notebook.nearest(buyers_of(deal.commodity), body.corner()) else {
             return;
         };

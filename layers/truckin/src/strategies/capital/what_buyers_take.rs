@@ -40,13 +40,25 @@ impl BehaviourLayer<TruckCreature> for WhatBuyersTake {
         self.counter.learn(heard, body);
         self.notebook.learn(heard, body);
         for outcome in heard.selected().map_or(&[][..], |selected| selected.outcomes) {
-            let Outcome::Sold { commodity, offered, units, .. } = *outcome else { continue };
+            let Outcome::Sold {
+                commodity,
+                offered,
+                units,
+                ..
+            } = *outcome
+            else {
+                continue;
+            };
             let (lot, least) = match commodity {
                 Commodity::Crates => (&mut self.lot_crates, FIRST_CRATES / 2),
                 Commodity::Items | Commodity::Gas => (&mut self.lot_items, FIRST_ITEMS / 2),
             };
             // All gone: try half as much again. Some left over: halfway to what was taken.
-            *lot = if units == offered { offered.max(*lot) * 3 / 2 } else { (*lot + units) / 2 };
+            *lot = if units == offered {
+                offered.max(*lot) * 3 / 2
+            } else {
+                (*lot + units) / 2
+            };
             *lot = (*lot).clamp(least, 100 * least);
         }
     }
@@ -56,7 +68,9 @@ impl BehaviourLayer<TruckCreature> for WhatBuyersTake {
             add(proposal, TruckAction::Sell(deal.units));
             return;
         }
-        let Some(deal) = self.counter.on_sale(body, KEEP_CENTS) else { return };
+        let Some(deal) = self.counter.on_sale(body, KEEP_CENTS) else {
+            return;
+        };
         let (lot, on_board) = match deal.commodity {
             Commodity::Crates => (self.lot_crates, body.crates()),
             Commodity::Items | Commodity::Gas => (self.lot_items, body.items()),

@@ -26,18 +26,24 @@ pub struct CheapestInReach {
 
 impl MicroStrategy for CheapestInReach {
     fn new(grid: Grid, _: Chance) -> Self {
-        Self { notebook: Notebook::new(grid), cheapest_cents: i32::MAX }
+        Self {
+            notebook: Notebook::new(grid),
+            cheapest_cents: i32::MAX,
+        }
     }
 }
 
 impl CheapestInReach {
     fn best_station(&self, body: &Controller<'_>) -> Option<Corner> {
         let reach = body.range_steps();
-        let stations = self.notebook.ready(Kind::GasStation, 0).filter_map(|(corner, note)| {
-            let steps = body.grid().steps(body.corner(), corner);
-            let litre = note.card.selling_cents;
-            (steps <= reach).then_some((litre * VISIT_LITRES + steps * (litre + STEP_CENTS), corner))
-        });
+        let stations = self
+            .notebook
+            .ready(Kind::GasStation, 0)
+            .filter_map(|(corner, note)| {
+                let steps = body.grid().steps(body.corner(), corner);
+                let litre = note.card.selling_cents;
+                (steps <= reach).then_some((litre * VISIT_LITRES + steps * (litre + STEP_CENTS), corner))
+            });
         stations.min().map(|(_, corner)| corner)
     }
 }
@@ -46,7 +52,10 @@ impl BehaviourLayer<TruckCreature> for CheapestInReach {
     fn feedback(&mut self, heard: &Feedback<'_, TruckCreature>, body: &Controller<'_>) {
         self.notebook.learn(heard, body);
         let stations = self.notebook.ready(Kind::GasStation, 0);
-        self.cheapest_cents = stations.map(|(_, note)| note.card.selling_cents).min().unwrap_or(i32::MAX);
+        self.cheapest_cents = stations
+            .map(|(_, note)| note.card.selling_cents)
+            .min()
+            .unwrap_or(i32::MAX);
     }
 
     fn go(&mut self, proposal: &mut TruckProposal<'_>, body: &Controller<'_>) {
@@ -54,7 +63,11 @@ impl BehaviourLayer<TruckCreature> for CheapestInReach {
         if here.kind == Kind::GasStation {
             let cheap = here.selling_cents <= self.cheapest_cents + 5;
             let litres = if cheap { i32::MAX } else { SIP_LITRES };
-            let wants = if cheap { body.tank_room_litres() >= 5 } else { body.range_steps() < LOW_STEPS };
+            let wants = if cheap {
+                body.tank_room_litres() >= 5
+            } else {
+                body.range_steps() < LOW_STEPS
+            };
             if wants && fill_here(proposal, body, litres) {
                 return;
             }

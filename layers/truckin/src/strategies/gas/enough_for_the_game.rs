@@ -22,7 +22,9 @@ pub struct EnoughForTheGame {
 
 impl MicroStrategy for EnoughForTheGame {
     fn new(grid: Grid, _: Chance) -> Self {
-        Self { notebook: Notebook::new(grid) }
+        Self {
+            notebook: Notebook::new(grid),
+        }
     }
 }
 

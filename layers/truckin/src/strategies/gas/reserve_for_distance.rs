@@ -21,7 +21,9 @@ pub struct ReserveForDistance {
 
 impl MicroStrategy for ReserveForDistance {
     fn new(grid: Grid, _: Chance) -> Self {
-        Self { notebook: Notebook::new(grid) }
+        Self {
+            notebook: Notebook::new(grid),
+        }
     }
 }
 

@@ -21,7 +21,9 @@ pub struct SeekWhenLow {
 
 impl MicroStrategy for SeekWhenLow {
     fn new(grid: Grid, _: Chance) -> Self {
-        Self { notebook: Notebook::new(grid) }
+        Self {
+            notebook: Notebook::new(grid),
+        }
     }
 }
 

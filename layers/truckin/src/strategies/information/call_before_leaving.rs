@@ -23,7 +23,11 @@ impl MicroStrategy for CallBeforeLeaving {
     fn new(grid: Grid, mut chance: Chance) -> Self {
         let mut to_call: Vec<Corner> = (0..grid.corners() as u16).map(Corner).collect();
         chance.shuffle(&mut to_call);
-        Self { notebook: Notebook::new(grid), to_call, done: false }
+        Self {
+            notebook: Notebook::new(grid),
+            to_call,
+            done: false,
+        }
     }
 }
 

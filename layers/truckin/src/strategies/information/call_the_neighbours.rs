@@ -22,7 +22,10 @@ pub struct CallTheNeighbours {
 
 impl MicroStrategy for CallTheNeighbours {
     fn new(grid: Grid, _: Chance) -> Self {
-        Self { notebook: Notebook::new(grid), called_from: None }
+        Self {
+            notebook: Notebook::new(grid),
+            called_from: None,
+        }
     }
 }
 

@@ -20,7 +20,10 @@ pub struct DriveToSeeFirst {
 
 impl MicroStrategy for DriveToSeeFirst {
     fn new(grid: Grid, _: Chance) -> Self {
-        Self { notebook: Notebook::new(grid), done: false }
+        Self {
+            notebook: Notebook::new(grid),
+            done: false,
+        }
     }
 }
 
@@ -28,7 +31,9 @@ impl BehaviourLayer<TruckCreature> for DriveToSeeFirst {
     fn feedback(&mut self, heard: &Feedback<'_, TruckCreature>, body: &Controller<'_>) {
         if !self.done {
             self.notebook.learn(heard, body);
-            self.done = Kind::ALL[1..].iter().all(|kind| self.notebook.known(*kind).len() >= ENOUGH);
+            self.done = Kind::ALL[1..]
+                .iter()
+                .all(|kind| self.notebook.known(*kind).len() >= ENOUGH);
         }
     }
 

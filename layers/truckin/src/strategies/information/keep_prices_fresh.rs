@@ -27,7 +27,11 @@ impl MicroStrategy for KeepPricesFresh {
     fn new(grid: Grid, mut chance: Chance) -> Self {
         let mut to_call: Vec<Corner> = (0..grid.corners() as u16).map(Corner).collect();
         chance.shuffle(&mut to_call);
-        Self { notebook: Notebook::new(grid), to_call, next_call_minute: 0 }
+        Self {
+            notebook: Notebook::new(grid),
+            to_call,
+            next_call_minute: 0,
+        }
     }
 }
 
@@ -35,7 +39,10 @@ impl KeepPricesFresh {
     fn stalest_retailer(&self, now: i32) -> Option<Corner> {
         let retailers = self.notebook.ready(Kind::Retailer, 0);
         let stale = retailers.map(|(corner, note)| (note.minute, corner));
-        stale.min().filter(|(minute, _)| now - minute > STALE_MINUTES).map(|(_, corner)| corner)
+        stale
+            .min()
+            .filter(|(minute, _)| now - minute > STALE_MINUTES)
+            .map(|(_, corner)| corner)
     }
 
     fn missing_kind_call(&mut self) -> Option<Corner> {
@@ -63,7 +70,11 @@ impl BehaviourLayer<TruckCreature> for KeepPricesFresh {
         }
         let call = self.missing_kind_call().or_else(|| {
             let due = now >= self.next_call_minute;
-            self.next_call_minute = if due { now + BETWEEN_CALLS_MINUTES } else { self.next_call_minute };
+            self.next_call_minute = if due {
+                now + BETWEEN_CALLS_MINUTES
+            } else {
+                self.next_call_minute
+            };
             due.then(|| self.stalest_retailer(now)).flatten()
         });
         if let Some(corner) = call {

@@ -19,7 +19,10 @@ pub struct BestPrice {
 
 impl MicroStrategy for BestPrice {
     fn new(grid: Grid, chance: Chance) -> Self {
-        Self { notebook: Notebook::new(grid), chance }
+        Self {
+            notebook: Notebook::new(grid),
+            chance,
+        }
     }
 }
 

@@ -17,14 +17,20 @@ pub struct NearestPartner {
 
 impl MicroStrategy for NearestPartner {
     fn new(grid: Grid, chance: Chance) -> Self {
-        Self { notebook: Notebook::new(grid), chance }
+        Self {
+            notebook: Notebook::new(grid),
+            chance,
+        }
     }
 }
 
 impl NearestPartner {
     fn target(&self, body: &Controller<'_>) -> Option<Corner> {
         let here = body.corner();
-        let partners = self.notebook.ready(partner_kind(body), SHORT_MINUTES).map(|(corner, _)| corner);
+        let partners = self
+            .notebook
+            .ready(partner_kind(body), SHORT_MINUTES)
+            .map(|(corner, _)| corner);
         partners
             .filter(|corner| *corner != here)
             .min_by_key(|corner| (body.grid().steps(here, *corner), *corner))

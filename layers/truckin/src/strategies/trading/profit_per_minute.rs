@@ -24,7 +24,11 @@ pub struct ProfitPerMinute {
 
 impl MicroStrategy for ProfitPerMinute {
     fn new(grid: Grid, chance: Chance) -> Self {
-        Self { notebook: Notebook::new(grid), chance, target: None }
+        Self {
+            notebook: Notebook::new(grid),
+            chance,
+            target: None,
+        }
     }
 }
 
@@ -37,14 +41,22 @@ impl ProfitPerMinute {
     /// The buyer whose price for the load, over the way there, is best.
     fn best_buyer(&self, body: &Controller<'_>) -> Option<Corner> {
         let loads = [(Kind::Consumer, body.items()), (Kind::Retailer, body.crates())];
-        let offers = loads.into_iter().filter(|(_, units)| *units > 0).flat_map(|(kind, units)| {
-            self.notebook.ready(kind, SHORT_MINUTES).map(move |(corner, note)| {
-                let steps = body.grid().steps(body.corner(), corner);
-                let cents = i64::from(units) * i64::from(note.card.buying_cents);
-                (Self::per_minute(cents, steps), corner)
-            })
-        });
-        offers.filter(|(_, corner)| *corner != body.corner()).max().map(|(_, corner)| corner)
+        let offers = loads
+            .into_iter()
+            .filter(|(_, units)| *units > 0)
+            .flat_map(|(kind, units)| {
+                self.notebook
+                    .ready(kind, SHORT_MINUTES)
+                    .map(move |(corner, note)| {
+                        let steps = body.grid().steps(body.corner(), corner);
+                        let cents = i64::from(units) * i64::from(note.card.buying_cents);
+                        (Self::per_minute(cents, steps), corner)
+                    })
+            });
+        offers
+            .filter(|(_, corner)| *corner != body.corner())
+            .max()
+            .map(|(_, corner)| corner)
     }
 
     /// The seller from which a full load, sold at the best buyer of it, brings most per minute.

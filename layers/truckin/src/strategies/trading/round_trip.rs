@@ -45,7 +45,11 @@ pub struct RoundTrip {
 
 impl MicroStrategy for RoundTrip {
     fn new(grid: Grid, chance: Chance) -> Self {
-        Self { notebook: Notebook::new(grid), chance, stage: Stage::Idle }
+        Self {
+            notebook: Notebook::new(grid),
+            chance,
+            stage: Stage::Idle,
+        }
     }
 }
 
@@ -53,14 +57,25 @@ impl RoundTrip {
     /// The buyer that brings most for what is on board, after the way.
     fn buyer_of_load(&self, body: &Controller<'_>) -> Option<Corner> {
         let loads = [(Kind::Consumer, body.items()), (Kind::Retailer, body.crates())];
-        let offers = loads.into_iter().filter(|(_, units)| *units > 0).flat_map(|(kind, units)| {
-            self.notebook.ready(kind, SHORT_MINUTES).map(move |(corner, note)| {
-                let steps = i64::from(body.grid().steps(body.corner(), corner));
-                let cents = i64::from(units) * i64::from(note.card.buying_cents);
-                (cents * 100 / (steps * i64::from(STEP_MINUTES) + STOPS_MINUTES), corner)
-            })
-        });
-        offers.filter(|(_, corner)| *corner != body.corner()).max().map(|(_, corner)| corner)
+        let offers = loads
+            .into_iter()
+            .filter(|(_, units)| *units > 0)
+            .flat_map(|(kind, units)| {
+                self.notebook
+                    .ready(kind, SHORT_MINUTES)
+                    .map(move |(corner, note)| {
+                        let steps = i64::from(body.grid().steps(body.corner(), corner));
+                        let cents = i64::from(units) * i64::from(note.card.buying_cents);
+                        (
+                            cents * 100 / (steps * i64::from(STEP_MINUTES) + STOPS_MINUTES),
+                            corner,
+                        )
+                    })
+            });
+        offers
+            .filter(|(_, corner)| *corner != body.corner())
+            .max()
+            .map(|(_, corner)| corner)
     }
 
     /// The trip with the best gain over its time that still fits in the game.
@@ -93,7 +108,9 @@ impl RoundTrip {
         if let Some(buyer) = self.buyer_of_load(body) {
             return Stage::Selling(buyer);
         }
-        self.best_trip(body).filter(|trip| trip.seller != body.corner()).map_or(Stage::Idle, Stage::Loading)
+        self.best_trip(body)
+            .filter(|trip| trip.seller != body.corner())
+            .map_or(Stage::Idle, Stage::Loading)
     }
 }
 
