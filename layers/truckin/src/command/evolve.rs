@@ -61,6 +61,9 @@ pub struct EvolveArgs {
 
 pub(super) fn run(args: &EvolveArgs) -> Result<(), Trouble> {
     let world = inputs::world(args.world.as_deref())?;
+    if let Some(grid) = &args.grid {
+        inputs::apart(&args.report, grid)?;
+    }
     let grid = args.grid.as_deref().map(read_results).transpose()?;
     let threads = threads(args.threads);
     let arena = TruckArena::new(

@@ -53,6 +53,11 @@ pub struct GridArgs {
 
 pub(super) fn run(args: &GridArgs) -> Result<(), Trouble> {
     let world = inputs::world(args.world.as_deref())?;
+    let path = args
+        .report
+        .clone()
+        .unwrap_or_else(|| args.out.with_extension("html"));
+    inputs::apart(&path, &args.out)?;
     let distinct = |list: &[u32]| (1..list.len()).all(|at| !list[..at].contains(&list[at]));
     if !distinct(&args.trucks) || !distinct(&args.slots) {
         return Err(Trouble::BadInput(

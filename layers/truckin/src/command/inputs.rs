@@ -70,6 +70,18 @@ pub(super) fn world(path: Option<&Path>) -> Result<World, Trouble> {
     })
 }
 
+/// Refuses a report that would take the place of a file that was read or written.
+pub(super) fn apart(report: &Path, other: &Path) -> Result<(), Trouble> {
+    let real = |path: &Path| std::fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
+    if real(report) == real(other) {
+        return Err(Trouble::BadInput(format!(
+            "{}: would be overwritten by the report",
+            other.display()
+        )));
+    }
+    Ok(())
+}
+
 /// Threads to use: as many as asked for, or as the machine has.
 pub(super) fn threads(asked: Option<usize>) -> usize {
     asked.unwrap_or_else(|| std::thread::available_parallelism().map_or(1, usize::from))

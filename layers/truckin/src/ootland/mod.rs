@@ -27,6 +27,9 @@ pub mod view;
 pub mod world;
 pub mod world_file;
 
+#[cfg(test)]
+mod rules_tests;
+
 pub use action::{Outcome, Refusal, TruckAction, TruckCreature};
 pub use chance::Chance;
 pub use clock::Clock;
