@@ -4,7 +4,7 @@
 //! (Gantchev 2001, 2.1.2.6). Advertised prices are honoured; a quantity may be cut.
 
 use super::dealers::{Commodity, Kind};
-use super::rules::{ITEMS_PER_CRATE, LITRE_MILLILITRES};
+use super::rules::{CRATE_CENTS_MAX, ITEMS_PER_CRATE, LITRE_MILLILITRES, UNIT_CENTS_MAX};
 
 /// What a dealer advertises: the same on the spot and over the telephone.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -39,6 +39,8 @@ pub struct Opening {
 pub struct Manager {
     books: Opening,
     wanted_items: i32,
+    bought_units: i64,
+    sold_units: i64,
 }
 
 impl Manager {
@@ -47,6 +49,8 @@ impl Manager {
         Self {
             books: opening,
             wanted_items: 0,
+            bought_units: 0,
+            sold_units: 0,
         }
     }
 
@@ -81,6 +85,16 @@ impl Manager {
         self.wanted_items
     }
 
+    /// Units bought from trucks since the start.
+    pub fn bought_units(&self) -> i64 {
+        self.bought_units
+    }
+
+    /// Units sold to trucks since the start.
+    pub fn sold_units(&self) -> i64 {
+        self.sold_units
+    }
+
     /// Room for crates.
     pub fn crate_storage(&self) -> i32 {
         self.books.crate_storage
@@ -101,11 +115,12 @@ impl Manager {
         self.books.card.selling_cents
     }
 
-    /// Puts up new prices. Only retailers set theirs; a price below one cent is put up as one cent.
+    /// Puts up new prices. Only retailers set theirs; a price below one cent is put up as
+    /// one cent, one beyond the largest as the largest.
     pub fn set_prices(&mut self, buying_cents: i32, selling_cents: i32) {
         if self.kind() == Kind::Retailer {
-            self.books.card.buying_cents = buying_cents.max(1);
-            self.books.card.selling_cents = selling_cents.max(1);
+            self.books.card.buying_cents = buying_cents.clamp(1, CRATE_CENTS_MAX);
+            self.books.card.selling_cents = selling_cents.clamp(1, UNIT_CENTS_MAX);
         }
     }
 
@@ -159,6 +174,7 @@ impl Manager {
     pub fn sell(&mut self, quantity: i32) -> (i32, i64) {
         let sold = quantity.min(self.on_sale()).max(0);
         let cents = i64::from(sold) * i64::from(self.selling_cents());
+        self.sold_units += i64::from(sold);
         match self.kind() {
             Kind::Producer => self.books.crates -= sold,
             Kind::Retailer => {
@@ -175,6 +191,7 @@ impl Manager {
     pub fn buy(&mut self, quantity: i32) -> (i32, i64) {
         let bought = quantity.min(self.in_demand()).max(0);
         let cents = i64::from(bought) * i64::from(self.buying_cents());
+        self.bought_units += i64::from(bought);
         match self.kind() {
             Kind::Retailer => {
                 self.books.crates += bought;

@@ -28,3 +28,7 @@ pub const ITEMS_PER_CRATE: i32 = 100;
 pub const TRUCKS_MAX: usize = 100;
 /// Slots in a game at most, so that minutes fit in 32 bits with room to spare.
 pub const SLOTS_MAX: u32 = 10_000_000;
+/// Price of an item or a litre at most, in cents: a hundred of them still fit in 32 bits.
+pub const UNIT_CENTS_MAX: i32 = 10_000_000;
+/// Price of a crate at most, in cents.
+pub const CRATE_CENTS_MAX: i32 = 1_000_000_000;

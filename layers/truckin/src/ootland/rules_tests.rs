@@ -346,13 +346,26 @@ fn a_manager_keeps_its_dealer_honest() {
 }
 
 #[test]
-fn a_retailer_moves_its_prices_with_its_stock() {
+fn a_retailer_moves_its_prices_with_what_is_taken() {
     let mut bench = Bench::new(999);
-    bench.land.trade(corner(2, 0)).0.sell(750);
     for _ in 0..48 {
         bench.slot();
     }
     let retailer = bench.land.manager(corner(2, 0));
-    assert!(retailer.buying_cents() > 12_000, "short of crates it pays more");
-    assert!(retailer.selling_cents() > 160, "short of items it asks more");
+    assert!(
+        retailer.buying_cents() > 12_000,
+        "nobody brings crates: it pays more"
+    );
+    assert!(retailer.selling_cents() < 160, "nobody buys items: it asks less");
+    let (crates, items) = (retailer.buying_cents(), retailer.selling_cents());
+    assert!(crates <= items * 100 - 500, "never without its margin");
+    for _ in 0..24 {
+        bench.land.trade(corner(2, 0)).0.sell(10);
+        bench.slot();
+    }
+    let retailer = bench.land.manager(corner(2, 0));
+    assert!(
+        retailer.selling_cents() > items,
+        "scarce and sought: it asks more"
+    );
 }

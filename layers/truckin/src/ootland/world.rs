@@ -187,6 +187,8 @@ impl World {
                 Dealer::Retailer(Retailer {
                     until_prices,
                     margin_cents: economy.retailer_margin_cents,
+                    bought_then: 0,
+                    sold_then: 0,
                 })
             }
             Kind::Consumer => {

@@ -25,7 +25,7 @@ use toml_span::{Span, parse};
 
 use super::dealers::Kind;
 use super::grid::{Grid, SIDE_MAX};
-use super::rules::ITEMS_PER_CRATE;
+use super::rules::{ITEMS_PER_CRATE, UNIT_CENTS_MAX};
 use super::world::{Economy, FixedDealer, World};
 
 /// Prices and quantities in a world file at most, so that no product of two leaves 64 bits.
@@ -157,9 +157,9 @@ impl Reader<'_> {
             (
                 "retailer_selling_cents",
                 &mut economy.retailer_selling_cents,
-                10_000_000,
+                i64::from(UNIT_CENTS_MAX),
             ),
-            ("gas_cents", &mut economy.gas_cents, 10_000_000),
+            ("gas_cents", &mut economy.gas_cents, i64::from(UNIT_CENTS_MAX)),
         ];
         for (key, field, limit) in ranges {
             if let Some((low, high)) = self.range(&mut table, key, limit) {
@@ -220,7 +220,7 @@ impl Reader<'_> {
             let limit = if key == "buying_cents" {
                 AMOUNT_MAX
             } else {
-                10_000_000
+                i64::from(UNIT_CENTS_MAX)
             };
             *price = self.number(table, key, (1, limit)).map(|cents| cents as i32);
             let own = match kind {

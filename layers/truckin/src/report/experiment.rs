@@ -25,7 +25,7 @@ fn alleles(rows: &[&Row], slot: usize) -> Vec<Mean> {
             let with = rows
                 .iter()
                 .filter(|row| usize::from(row.chromosome.genes()[slot]) == gene);
-            Mean::of(with.map(|row| row.profit_cents))
+            Mean::of_clusters(with.map(|row| (row.game, row.profit_cents)))
         })
         .collect()
 }
@@ -46,7 +46,10 @@ fn winner(means: &[Mean]) -> Option<(usize, bool)> {
 pub fn add_to(page: &mut Page, rows: &[Row]) {
     let cells = by_cell(rows);
     page.heading("The grid: how trucks fared");
-    page.paragraph("Profit of all trucks of a cell, each drawn at random from all chromosomes.");
+    page.paragraph(
+        "Profit of all trucks of a cell, each drawn at random from all chromosomes. \
+         Intervals take each game as one observation.",
+    );
     page.table(
         &[
             "trucks × slots",
@@ -93,7 +96,7 @@ fn name(cell: Cell) -> String {
 }
 
 fn overview(cell: Cell, rows: &[&Row]) -> Vec<String> {
-    let mean = Mean::of(rows.iter().map(|row| row.profit_cents));
+    let mean = Mean::of_clusters(rows.iter().map(|row| (row.game, row.profit_cents)));
     let mut sorted: Vec<i64> = rows.iter().map(|row| row.profit_cents).collect();
     sorted.sort_unstable();
     let share = |count: usize| format!("{} %", count * 100 / rows.len().max(1));

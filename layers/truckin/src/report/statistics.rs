@@ -1,5 +1,7 @@
 //! Means, spreads and confidence intervals of whole numbers.
 
+use std::collections::BTreeMap;
+
 /// Two-sided 95 % of the normal distribution; samples here are in the hundreds and more.
 const NORMAL_95: f64 = 1.959_963_985;
 
@@ -34,6 +36,25 @@ impl Mean {
             count,
             mean,
             deviation,
+        }
+    }
+
+    /// Of numbers that come in clusters, such as trucks that met in one game: the deviation is that
+    /// which would give the uncertainty the clusters show, each taken as one observation.
+    pub fn of_clusters(numbers: impl Iterator<Item = (u32, i64)> + Clone) -> Self {
+        let plain = Self::of(numbers.clone().map(|(_, number)| number));
+        let mut off: BTreeMap<u32, f64> = BTreeMap::new();
+        for (cluster, number) in numbers {
+            *off.entry(cluster).or_default() += number as f64 - plain.mean;
+        }
+        if off.len() < 2 {
+            return plain;
+        }
+        let (count, clusters) = (plain.count as f64, off.len() as f64);
+        let squares: f64 = off.values().map(|off| off * off).sum();
+        Self {
+            deviation: (squares * clusters / (clusters - 1.0) / count).sqrt(),
+            ..plain
         }
     }
 
@@ -78,4 +99,40 @@ pub fn dollars(cents: f64) -> String {
         grouped.push(digit);
     }
     format!("{}${grouped}", if whole < 0 { "-" } else { "" })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Mean, dollars, hundredth};
+
+    #[test]
+    fn mean_and_interval() {
+        let mean = Mean::of([2, 4, 4, 4, 5, 5, 7, 9]);
+        assert_eq!(mean.mean, 5.0);
+        assert!((mean.deviation - (32.0_f64 / 7.0).sqrt()).abs() < 1e-12);
+        assert!(mean.is_above_zero() && !mean.is_below_zero());
+    }
+
+    #[test]
+    fn clusters_of_one_are_no_clusters_and_copies_add_nothing() {
+        let numbers = [2, 4, 4, 4, 5, 5, 7, 9];
+        let alone = Mean::of_clusters(
+            numbers
+                .iter()
+                .enumerate()
+                .map(|(at, number)| (at as u32, *number)),
+        );
+        let plain = Mean::of(numbers);
+        assert!((alone.half_width() - plain.half_width()).abs() < 1e-12);
+        let copies = (0..5).flat_map(|_| numbers.iter().enumerate());
+        let copied = Mean::of_clusters(copies.map(|(at, number)| (at as u32, *number)));
+        assert!((copied.half_width() - plain.half_width()).abs() < 1e-12);
+    }
+
+    #[test]
+    fn money_in_words() {
+        assert_eq!(dollars(123_456_789.0), "$1,234,568");
+        assert_eq!(dollars(-49_900.0), "-$499");
+        assert_eq!((hundredth(&[1, 2, 3], 50), hundredth(&[], 50)), (2, 0));
+    }
 }

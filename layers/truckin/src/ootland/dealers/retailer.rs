@@ -14,6 +14,10 @@ pub struct Retailer {
     pub until_prices: u32,
     /// Least margin on a crate bought, unpacked and sold, in cents.
     pub margin_cents: i32,
+    /// Crates it had bought, all in all, when it last looked.
+    pub bought_then: i64,
+    /// Items it had sold, all in all, when it last looked.
+    pub sold_then: i64,
 }
 
 impl Retailer {
@@ -27,22 +31,26 @@ impl Retailer {
         self.until_prices -= 1;
     }
 
-    /// Dear when scarce, cheap when plenty: a hundredth at a time, never without its margin.
-    fn move_prices(&self, manager: &mut Manager) {
-        let crates_full = manager.crates() * 4 / manager.crate_storage().max(1);
-        let items_full = manager.items() * 4 / manager.item_storage().max(1);
+    /// A hundredth at a time: a price that finds no takers comes towards them, one that finds too many
+    /// goes away from them. Crates are never paid more for than their items bring less the margin.
+    fn move_prices(&mut self, manager: &mut Manager) {
+        let bought = manager.bought_units() > self.bought_then;
+        let sold = manager.sold_units() > self.sold_then;
+        (self.bought_then, self.sold_then) = (manager.bought_units(), manager.sold_units());
+        let crates_plenty = manager.crates() * 2 > manager.crate_storage();
+        let items_scarce = manager.items() * 4 < manager.item_storage();
         let cent = |price: i32| (price / 100).max(1);
-        let mut buying = manager.buying_cents();
         let mut selling = manager.selling_cents();
-        match items_full {
-            0 => selling += cent(selling),
-            1 | 2 => {}
-            _ => selling -= cent(selling),
+        if sold && items_scarce {
+            selling += cent(selling);
+        } else if !sold && manager.items() > 0 {
+            selling -= cent(selling);
         }
-        match crates_full {
-            0 => buying += cent(buying),
-            1 => {}
-            _ => buying -= cent(buying),
+        let mut buying = manager.buying_cents();
+        if bought && crates_plenty {
+            buying -= cent(buying);
+        } else if !bought && !crates_plenty {
+            buying += cent(buying);
         }
         buying = buying.min(selling * ITEMS_PER_CRATE - self.margin_cents);
         manager.set_prices(buying, selling);
