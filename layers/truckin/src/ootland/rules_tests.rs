@@ -191,7 +191,7 @@ fn goods_go_from_producer_to_retailer_to_consumer() {
     }
     bench.act(Move(East, 1));
     let sold = bench.act(Sell(300));
-    let (offered, units, cents) = (300, 5 * 3, 5 * 3 * 200);
+    let (offered, units, cents) = (300, 5 * 10, 5 * 10 * 200);
     assert_eq!(
         sold,
         Outcome::Sold {
@@ -202,7 +202,7 @@ fn goods_go_from_producer_to_retailer_to_consumer() {
         },
         "never in excess"
     );
-    assert_eq!((bench.book.items, bench.book.capital_cents), (285, 13_000));
+    assert_eq!((bench.book.items, bench.book.capital_cents), (250, 20_000));
     assert_eq!(bench.book.tank_millilitres, 47_000);
 }
 
@@ -231,7 +231,7 @@ fn a_dealer_need_not_take_the_whole_quantity() {
     };
     assert_eq!(
         (asked, units, cents),
-        (100, 30, 300_000),
+        (100, 50, 500_000),
         "what stood in the yard"
     );
 }
@@ -342,7 +342,7 @@ fn a_manager_keeps_its_dealer_honest() {
     let (producer, _) = bench.land.trade(corner(1, 0));
     producer.set_prices(1, 1);
     assert_eq!(producer.selling_cents(), 10_000, "one price for all producers");
-    assert_eq!(producer.take_in_crates(1_000), 30, "no more than the yard holds");
+    assert_eq!(producer.take_in_crates(1_000), 50, "no more than the yard holds");
 }
 
 #[test]

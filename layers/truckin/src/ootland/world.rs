@@ -38,14 +38,17 @@ pub struct Economy {
 }
 
 impl Default for Economy {
+    /// Prices as in the source's examples. Quantities such that the trade of the whole country, about
+    /// 80 items a slot at a dollar from producer to consumer, feeds 20 trucks that burn up to $1.70 of
+    /// gas a slot each, but not 20 careless ones.
     fn default() -> Self {
         Self {
             crate_cents: 10_000,
-            crates_per_100_slots: 10,
-            yard_crates: 60,
+            crates_per_100_slots: 16,
+            yard_crates: 100,
             item_cents: 200,
-            items_per_100_slots: 300,
-            wanted_items_max: 600,
+            items_per_100_slots: 1_000,
+            wanted_items_max: 2_000,
             retailer_buying_cents: (10_800, 13_500),
             retailer_selling_cents: (145, 185),
             retailer_margin_cents: 500,
@@ -176,17 +179,19 @@ impl World {
             }
             Kind::Retailer => {
                 let (low, high) = economy.retailer_buying_cents;
-                card.buying_cents = chance.between(low, high);
+                let buying = chance.between(low, high);
+                card.buying_cents = fixed.buying_cents.unwrap_or(buying);
                 let (low, high) = economy.retailer_selling_cents;
-                card.selling_cents = chance.between(low, high);
+                let selling = chance.between(low, high);
+                card.selling_cents = fixed.selling_cents.unwrap_or(selling);
                 opening.capital_cents = economy.retailer_capital_cents;
                 opening.crate_storage = economy.retailer_crates;
                 opening.item_storage = economy.retailer_items;
                 opening.items = economy.retailer_items / 4;
-                let until_prices = chance.below(12);
                 Dealer::Retailer(Retailer {
-                    until_prices,
+                    until_prices: chance.below(12),
                     margin_cents: economy.retailer_margin_cents,
+                    opening_cents: (card.buying_cents, card.selling_cents),
                     bought_then: 0,
                     sold_then: 0,
                 })
@@ -201,12 +206,11 @@ impl World {
             }
             Kind::GasStation => {
                 let (low, high) = economy.gas_cents;
-                card.selling_cents = chance.between(low, high);
+                let selling = chance.between(low, high);
+                card.selling_cents = fixed.selling_cents.unwrap_or(selling);
                 Dealer::GasStation(GasStation)
             }
         };
-        card.buying_cents = fixed.buying_cents.unwrap_or(card.buying_cents);
-        card.selling_cents = fixed.selling_cents.unwrap_or(card.selling_cents);
         opening.card = card;
         Stand {
             manager: Manager::new(opening),

@@ -6,6 +6,12 @@ use super::super::rules::ITEMS_PER_CRATE;
 
 /// Slots between two looks at the prices: two hours.
 const PRICE_SLOTS: u32 = 12;
+/// How far its price for crates goes from the one it opened with, in hundredths: lowest, highest.
+/// Without such a band one thoughtless truck, or a time without any, would send prices to where nobody
+/// trades again.
+const BUYING_BAND: (i64, i64) = (85, 125);
+/// The same for its price for items.
+const SELLING_BAND: (i64, i64) = (85, 115);
 
 /// A dealer who buys CRATES and sells ITEMS.
 #[derive(Clone, Debug)]
@@ -14,6 +20,8 @@ pub struct Retailer {
     pub until_prices: u32,
     /// Least margin on a crate bought, unpacked and sold, in cents.
     pub margin_cents: i32,
+    /// The prices it opened with, for crates and for items, in cents.
+    pub opening_cents: (i32, i32),
     /// Crates it had bought, all in all, when it last looked.
     pub bought_then: i64,
     /// Items it had sold, all in all, when it last looked.
@@ -32,7 +40,7 @@ impl Retailer {
     }
 
     /// A hundredth at a time: a price that finds no takers comes towards them, one that finds too many
-    /// goes away from them. Crates are never paid more for than their items bring less the margin.
+    /// goes away from them, both within their bands. Crates are never paid more for than their items bring less the margin.
     fn move_prices(&mut self, manager: &mut Manager) {
         let bought = manager.bought_units() > self.bought_then;
         let sold = manager.sold_units() > self.sold_then;
@@ -46,13 +54,20 @@ impl Retailer {
         } else if !sold && manager.items() > 0 {
             selling -= cent(selling);
         }
+        selling = within(selling, self.opening_cents.1, SELLING_BAND);
         let mut buying = manager.buying_cents();
         if bought && crates_plenty {
             buying -= cent(buying);
         } else if !bought && !crates_plenty {
             buying += cent(buying);
         }
-        buying = buying.min(selling * ITEMS_PER_CRATE - self.margin_cents);
+        buying = within(buying, self.opening_cents.0, BUYING_BAND)
+            .min(selling * ITEMS_PER_CRATE - self.margin_cents);
         manager.set_prices(buying, selling);
     }
+}
+
+fn within(price: i32, opening: i32, (lowest, highest): (i64, i64)) -> i32 {
+    let opening = i64::from(opening);
+    i64::from(price).clamp(opening * lowest / 100, opening * highest / 100) as i32
 }
