@@ -24,6 +24,11 @@
 //! Local words: *below* means a smaller [`LayerId`]. Below goes first: left alone, the lowest layer
 //! that has a plan acts, and a layer above takes over by inhibiting it.
 
+/// The example of the README compiles.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+pub struct Readme;
+
 mod communication;
 mod control;
 mod creature;

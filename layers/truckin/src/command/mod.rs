@@ -15,12 +15,22 @@ use clap::{Args, Parser, Subcommand};
 
 pub use inputs::Trouble;
 
+const EXAMPLES: &str = "Examples:
+  truckin strategies                        what the digits of a chromosome stand for
+  truckin game 4331 2322 --slots 300        watch one game
+  truckin grid                              the whole experiment; again, to go on after a stop
+  truckin evolve --grid truckin-grid.csv    evolve trucks and report
+  truckin world check desert.toml           faults with line and column
+
+Exit status: 0 done, 1 failed, 2 bad input.";
+
 /// The command line of the `truckin` binary.
 #[derive(Debug, Parser)]
 #[command(
     name = "truckin",
     version,
-    about = "Truckin': layers in two phases, and trucks that evolve"
+    about = "Truckin': layers in two phases, and trucks that evolve",
+    after_help = EXAMPLES
 )]
 pub struct CommandLine {
     /// What to do.

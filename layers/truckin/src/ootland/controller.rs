@@ -16,7 +16,8 @@ use super::grid::{Corner, Direction, Grid};
 use super::land::Land;
 use super::phone;
 use super::rules::{
-    LITRE_MILLILITRES, SLOT_MINUTES, STEP_MILLILITRES, STEP_MINUTES, TANK_MILLILITRES, TRUCK_CAPITAL_CENTS,
+    LITRE_MILLILITRES, LOAD_UNITS_MAX, SLOT_MINUTES, STEP_MILLILITRES, STEP_MINUTES, TANK_MILLILITRES,
+    TRUCK_CAPITAL_CENTS,
 };
 
 /// What one truck has, as its controller books it.
@@ -204,8 +205,13 @@ impl Controller<'_> {
         if commodity == Commodity::Gas && asked > self.tank_room_litres() {
             return Err(Refusal::TankFull);
         }
+        let room = match commodity {
+            Commodity::Crates => LOAD_UNITS_MAX - self.book.crates,
+            Commodity::Items => LOAD_UNITS_MAX - self.book.items,
+            Commodity::Gas => asked,
+        };
         let (manager, ledger) = self.land.trade(self.book.corner);
-        let (units, cents) = manager.sell(asked);
+        let (units, cents) = manager.sell(asked.min(room));
         self.book.capital_cents -= cents;
         match commodity {
             Commodity::Crates => {

@@ -31,4 +31,7 @@ pub const SLOTS_MAX: u32 = 10_000_000;
 /// Price of an item or a litre at most, in cents: a hundred of them still fit in 32 bits.
 pub const UNIT_CENTS_MAX: i32 = 10_000_000;
 /// Price of a crate at most, in cents.
-pub const CRATE_CENTS_MAX: i32 = 1_000_000_000;
+pub const CRATE_CENTS_MAX: i32 = 10_000_000;
+/// Units of one commodity on a truck at most. The source sets no limit; this one is far beyond what a
+/// game of the largest length brings about and keeps sums in 32 bits, values in 64.
+pub const LOAD_UNITS_MAX: i32 = 1_000_000_000;

@@ -29,7 +29,9 @@ use super::rules::{ITEMS_PER_CRATE, UNIT_CENTS_MAX};
 use super::world::{Economy, FixedDealer, World};
 
 /// Prices and quantities in a world file at most, so that no product of two leaves 64 bits.
-pub const AMOUNT_MAX: i64 = 1_000_000_000;
+pub const AMOUNT_MAX: i64 = 10_000_000;
+/// Capital in a world file at most, in cents.
+pub const CAPITAL_CENTS_MAX: i64 = 1_000_000_000_000;
 
 /// Something wrong in a world file.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -137,7 +139,7 @@ impl Reader<'_> {
             (
                 "retailer_items",
                 &mut economy.retailer_items,
-                (i64::from(ITEMS_PER_CRATE), 100_000_000),
+                (i64::from(ITEMS_PER_CRATE), AMOUNT_MAX),
             ),
         ];
         for (key, field, limits) in fields {
@@ -145,7 +147,7 @@ impl Reader<'_> {
                 *field = number as i32;
             }
         }
-        if let Some(cents) = self.number(&mut table, "retailer_capital_cents", any) {
+        if let Some(cents) = self.number(&mut table, "retailer_capital_cents", (0, CAPITAL_CENTS_MAX)) {
             economy.retailer_capital_cents = cents;
         }
         let ranges = [

@@ -124,6 +124,18 @@ pub fn add_to(page: &mut Page, generations: &[Generation], games: u32) {
         label: dollars,
     };
     page.html(&plot.render());
+    if let (Some(first), Some(last)) = (generations.first(), generations.last()) {
+        let nearly = mean(first) + 0.9 * (mean(last) - mean(first));
+        let there = generations
+            .iter()
+            .find(|one| mean(one) >= nearly)
+            .map_or(0, |one| one.number);
+        page.paragraph(&format!(
+            "The mean went from {} to {} a game; nine tenths of the way were made by generation {there}.",
+            dollars(mean(first)),
+            dollars(mean(last)),
+        ));
+    }
     frequencies(page, generations);
 }
 

@@ -4,7 +4,7 @@ use backplane::{BehaviourLayer, Feedback};
 
 use super::{SHORT_MINUTES, go_or_look};
 use crate::ootland::chance::Chance;
-use crate::ootland::rules::STEP_MINUTES;
+use crate::ootland::rules::{LOAD_UNITS_MAX, STEP_MINUTES};
 use crate::ootland::{Controller, Corner, Grid, Kind, TruckCreature};
 use crate::strategies::MicroStrategy;
 use crate::strategies::notebook::Notebook;
@@ -65,7 +65,8 @@ impl ProfitPerMinute {
         let mut best = (0, None);
         for (from, to) in pairs {
             for (seller, asks) in self.notebook.ready(from, SHORT_MINUTES) {
-                let units = body.capital_cents() / i64::from(asks.card.selling_cents.max(1));
+                let units = (body.capital_cents() / i64::from(asks.card.selling_cents.max(1)))
+                    .min(i64::from(LOAD_UNITS_MAX));
                 let way = body.grid().steps(body.corner(), seller);
                 for (buyer, pays) in self.notebook.ready(to, SHORT_MINUTES) {
                     let gain = i64::from(pays.card.buying_cents - asks.card.selling_cents);
