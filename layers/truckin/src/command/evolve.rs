@@ -120,24 +120,49 @@ fn line(generation: &Generation, games: u32) -> String {
     )
 }
 
-/// The truck evolution arrived at: of those in the last generation's mating pool, the one with the
-/// best mean over all generations it was in, and so the most evidence behind it.
+/// The truck evolution arrived at: of those in the last generation's mating pool, the one that has been
+/// ahead of the mean of its generations by most, all generations together. One lucky generation does not
+/// outweigh many good ones.
 fn champion(generations: &[Generation]) -> Chromosome {
-    let mut records: BTreeMap<&Genome, (i64, i64)> = BTreeMap::new();
-    for (genome, fitness) in generations.iter().flat_map(|generation| &generation.ranked) {
-        let record = records.entry(genome).or_default();
-        record.0 += fitness;
-        record.1 += 1;
+    let mut ahead: BTreeMap<&Genome, i64> = BTreeMap::new();
+    for generation in generations {
+        let members = generation.ranked.len() as i64;
+        let mean = generation.ranked.iter().map(|(_, fitness)| fitness).sum::<i64>() / members;
+        let mut counted: Vec<&Genome> = Vec::new();
+        for (genome, fitness) in &generation.ranked {
+            // Of copies in one generation only the best counts: many copies are no more evidence.
+            if !counted.contains(&genome) {
+                counted.push(genome);
+                *ahead.entry(genome).or_default() += fitness - mean;
+            }
+        }
     }
     let last = generations.last().expect("at least one generation");
     let pool = Breeding::of(last.ranked.len()).parents();
-    let by_record = |genome: &Genome| {
-        let (sum, count) = records[genome];
-        (sum / count, count)
-    };
-    let (best, _) = last.ranked[..pool]
-        .iter()
-        .max_by_key(|(genome, _)| by_record(genome))
-        .expect("a mating pool of at least one");
-    chromosome_of(best)
+    let best = last.ranked[..pool].iter().max_by_key(|(genome, _)| ahead[genome]);
+    chromosome_of(&best.expect("a mating pool of at least one").0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Generation, Genome, champion};
+
+    #[test]
+    fn one_lucky_generation_does_not_outweigh_many_good_ones() {
+        let genome = |text: &str| Genome::new(&text.bytes().map(|digit| digit - b'0').collect::<Vec<_>>());
+        let mut generations: Vec<Generation> = (0..5)
+            .map(|number| Generation {
+                number,
+                ranked: vec![(genome("4331"), 90), (genome("0000"), 10)],
+            })
+            .collect();
+        let ranked = vec![(genome("2333"), 150), (genome("4331"), 80), (genome("0000"), 10)];
+        generations.push(Generation {
+            number: 5,
+            ranked: [ranked.clone(), ranked].concat(),
+        });
+        generations[5].ranked.sort_by_key(|(_, fitness)| -fitness);
+        generations[5].ranked.swap(1, 2);
+        assert_eq!(champion(&generations).to_string(), "4331");
+    }
 }
