@@ -5,3 +5,5 @@
 
 pub mod hierarchy;
 pub mod language;
+pub mod nest;
+pub mod planning;
