@@ -5,5 +5,6 @@
 
 pub mod hierarchy;
 pub mod language;
+pub mod learning;
 pub mod nest;
 pub mod planning;

@@ -86,7 +86,7 @@ impl World {
         let mut taken = [false; FACED_MAX];
         loop {
             let before = faced.count;
-            for (place, disc) in self.seen.obstacles.iter().take(FACED_MAX).enumerate() {
+            for (place, (disc, _)) in self.seen.obstacles.iter().take(FACED_MAX).enumerate() {
                 if taken[place] || !self.nearer(disc, target) {
                     continue;
                 }

@@ -6,6 +6,11 @@ use super::world::{Disc, NEST_RADIUS_M, World};
 
 /// The robot feels what is within this distance of its middle without seeing it, metres.
 const TOUCH_M: f64 = 0.9;
+/// How long an obstacle stays before the eyes after it left the view, seconds: longer than turning around
+/// takes, or the robot would forget what it turns away from and turn back.
+const AFTERIMAGE_S: f64 = 6.0;
+/// The same for a person, who will not stay there.
+const MOVING_AFTERIMAGE_S: f64 = 1.0;
 
 /// What the eyes see now. The lists keep their room from beat to beat.
 #[derive(Clone, Debug, Default)]
@@ -15,12 +20,21 @@ pub(crate) struct Seen {
     /// Objects seen in the beat before.
     before: Vec<u32>,
     pub(crate) stations: Vec<(u32, Point)>,
-    /// Obstacles and persons.
-    pub(crate) obstacles: Vec<Disc>,
+    /// Obstacles and persons, and until when each stays before the eyes, seconds.
+    pub(crate) obstacles: Vec<(Disc, f64)>,
     /// A place that meets the criteria of a nest site.
     pub(crate) site: Option<u32>,
     /// The robot's own nest is in view.
     pub(crate) nest: bool,
+}
+
+impl Seen {
+    fn keep(&mut self, disc: Disc, until_s: f64) {
+        match self.obstacles.iter_mut().find(|(known, _)| known.id == disc.id) {
+            Some(known) => *known = (disc, until_s),
+            None => self.obstacles.push((disc, until_s)),
+        }
+    }
 }
 
 impl World {
@@ -60,23 +74,25 @@ impl World {
                 seen.stations.push((station.id, station.place));
             }
         }
-        seen.obstacles.clear();
+        let now_s = self.now_s;
+        seen.obstacles.retain(|&(_, until_s)| until_s > now_s);
         for disc in &self.obstacles {
             let nearest = disc
                 .place
                 .towards(disc.place.direction_rad(self.robot.place), disc.radius_m);
             if self.sees(nearest, Some(disc.id)) {
-                seen.obstacles.push(*disc);
+                seen.keep(*disc, now_s + AFTERIMAGE_S);
                 self.robot.map.add(disc.id, disc.place, disc.radius_m);
             }
         }
         for person in &self.persons {
             if self.sees(person.place, None) {
-                seen.obstacles.push(Disc {
+                let disc = Disc {
                     id: person.id,
                     place: person.place,
                     radius_m: person.radius_m,
-                });
+                };
+                seen.keep(disc, now_s + MOVING_AFTERIMAGE_S);
             }
         }
         seen.site = self

@@ -18,7 +18,7 @@ use crate::hierarchy::{Goal, McuId};
 /// Turn of the steering wheel, radians a second.
 const STEERING_RAD_S: f64 = 3.0;
 /// Above this deviation the robot turns on the spot, radians.
-const ON_THE_SPOT_RAD: f64 = 0.5;
+const ON_THE_SPOT_RAD: f64 = 0.15;
 /// The wheel is on course within this, radians.
 const ON_COURSE_RAD: f64 = 0.02;
 /// Arm turning, radians a second, and growing, metres a second.

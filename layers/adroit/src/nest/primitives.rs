@@ -146,7 +146,8 @@ impl Senses for World {
             "course-past-one" | "course-past-two" | "course-past-many" => self.pass(given),
             "planned-course" => {
                 let next = self.planner.next(robot.place, &robot.map)?;
-                Some(self.course(given, next))
+                let course = self.course(given, next);
+                Some(course.with_value(course.value.min(robot.place.distance_m(next).max(0.05))))
             }
             "back-off" => Some(self.backward()),
             unknown => unreachable!("no goal criterion {unknown}"),

@@ -9,7 +9,7 @@ use crate::planning::Map;
 /// Radius of the round body, metres.
 pub const RADIUS_M: f64 = 0.25;
 /// From the axle to the steering wheel, which is also the driven one, metres.
-pub const WHEELBASE_M: f64 = 0.30;
+pub(crate) const WHEELBASE_M: f64 = 0.30;
 /// Reach of the arm from the middle of the body, metres.
 pub const ARM_M: f64 = 0.7;
 /// Speed of the driven wheel, metres a second.

@@ -171,22 +171,6 @@ impl World {
         self.interrupt = true;
     }
 
-    /// Whether a body of a radius can be at a place without touching an obstacle, a person or a wall.
-    #[must_use]
-    pub(crate) fn free(&self, place: Point, radius_m: f64) -> bool {
-        let inside = |at: f64, size: f64| at > radius_m && at < size - radius_m;
-        inside(place.x_m, FLOOR_X_M)
-            && inside(place.y_m, FLOOR_Y_M)
-            && self
-                .obstacles
-                .iter()
-                .all(|disc| place.distance_m(disc.place) > radius_m + disc.radius_m)
-            && self
-                .persons
-                .iter()
-                .all(|person| place.distance_m(person.place) > radius_m + person.radius_m)
-    }
-
     /// One beat: the working MCUs go on, then everything else moves, then the eyes look. Tells through
     /// `ended` which MCUs ended, and whether they did what they were called for.
     pub(crate) fn beat(&mut self, working: &mut [Option<Working>], mut ended: impl FnMut(McuId, bool)) {

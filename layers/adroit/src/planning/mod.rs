@@ -22,6 +22,8 @@ const CELLS_X: i32 = (FLOOR_X_M / CELL_M) as i32;
 const CELLS_Y: i32 = (FLOOR_Y_M / CELL_M) as i32;
 /// A plan serves a target that moved by less than this, metres.
 const SAME_TARGET_M: f64 = 0.15;
+/// The robot stands at a point of the way when it is this near, metres.
+const THERE_M: f64 = 0.15;
 /// Cost of a straight and of a slanting step, thousandths of a cell.
 const STRAIGHT: u32 = 1000;
 const SLANTING: u32 = 1414;
@@ -89,13 +91,13 @@ impl Planner {
         &self.way
     }
 
-    /// The farthest point of the way that can be gone to straight; `None` when the robot has left the way.
+    /// The farthest point of the way that can be gone to straight, or the one behind it when the robot stands
+    /// there already; `None` when the robot has left the way.
     pub(crate) fn next(&self, from: Point, map: &Map) -> Option<Point> {
-        self.way
-            .iter()
-            .rev()
-            .copied()
-            .find(|&point| map.clear(from, point, CLEARANCE_M / 2.0))
+        let clear = |&point: &Point| map.clear(from, point, CLEARANCE_M / 2.0);
+        let farthest = self.way.iter().rposition(clear)?;
+        let there = self.way[farthest].distance_m(from) < THERE_M;
+        Some(self.way[(farthest + usize::from(there)).min(self.way.len() - 1)])
     }
 
     fn search(&mut self, from: Point, target: Point, map: &Map) {
@@ -178,6 +180,8 @@ impl World {
         if !on_way {
             let mut planner = std::mem::take(&mut self.planner);
             planner.search(self.robot.place, target, &self.robot.map);
+            // What was just chosen without a plan is reviewed at once.
+            self.interrupt |= !planner.way.is_empty();
             self.planner = planner;
         }
     }
