@@ -13,20 +13,20 @@ use pathfinding::prelude::astar;
 
 use crate::nest::{CLEARANCE_M, FLOOR_X_M, FLOOR_Y_M, Point, RADIUS_M, World, distance_to_segment_m};
 
-/// Side of a cell, metres.
-const CELL_M: f64 = 0.2;
 /// Most obstacles remembered; further ones are not planned around.
 const KNOWN_MAX: usize = 64;
-/// Cells along the floor.
-const CELLS_X: i32 = (FLOOR_X_M / CELL_M) as i32;
-const CELLS_Y: i32 = (FLOOR_Y_M / CELL_M) as i32;
 /// A plan serves a target that moved by less than this, metres.
 const SAME_TARGET_M: f64 = 0.15;
 /// The robot stands at a point of the way when it is this near, metres.
 const THERE_M: f64 = 0.15;
-/// Cost of a straight and of a slanting step, thousandths of a cell.
-const STRAIGHT: u32 = 1000;
-const SLANTING: u32 = 1414;
+/// Corners around an obstacle.
+const CORNERS: usize = 16;
+/// From a corner to a wall, metres.
+const WALL_M: f64 = RADIUS_M + 0.05;
+/// How far from the target the robot may stop, metres.
+const SHORT_M: f64 = 0.55;
+/// What following a way may lose of the clearance it was searched with, metres.
+const SLACK_M: f64 = 0.04;
 
 /// Obstacles seen so far.
 #[derive(Clone, Debug, Default)]
@@ -52,6 +52,26 @@ impl Map {
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.known.is_empty()
+    }
+
+    /// Points around every obstacle, just far enough out to go from one to the next, that are free themselves.
+    fn corners(&self) -> Vec<Point> {
+        let mut corners = Vec::new();
+        for &(_, middle, radius_m) in &self.known {
+            let slice_rad = core::f64::consts::TAU / CORNERS as f64;
+            let out_m = (radius_m + RADIUS_M + CLEARANCE_M) / libm::cos(slice_rad / 2.0) + 0.01;
+            for corner in 0..CORNERS {
+                let place = middle.towards(corner as f64 * slice_rad, out_m);
+                let inside = |at: f64, size: f64| at > WALL_M && at < size - WALL_M;
+                let free = self.known.iter().all(|&(_, other, radius_m)| {
+                    other.distance_m(place) >= radius_m + RADIUS_M + CLEARANCE_M
+                });
+                if free && inside(place.x_m, FLOOR_X_M) && inside(place.y_m, FLOOR_Y_M) {
+                    corners.push(place);
+                }
+            }
+        }
+        corners
     }
 
     /// Whether the body gets straight from one place to another, with some of the clearance kept.
@@ -94,76 +114,64 @@ impl Planner {
     /// The farthest point of the way that can be gone to straight, or the one behind it when the robot stands
     /// there already; `None` when the robot has left the way.
     pub(crate) fn next(&self, from: Point, map: &Map) -> Option<Point> {
-        let clear = |&point: &Point| map.clear(from, point, CLEARANCE_M / 2.0);
-        let farthest = self.way.iter().rposition(clear)?;
+        let last = self.way.len().checked_sub(1)?;
+        let farthest = (0..=last).rev().find(|&place| {
+            let point = self.way[place];
+            let to = if place == last {
+                short_of(from, point)
+            } else {
+                point
+            };
+            map.clear(from, to, CLEARANCE_M - SLACK_M)
+        })?;
         let there = self.way[farthest].distance_m(from) < THERE_M;
-        Some(self.way[(farthest + usize::from(there)).min(self.way.len() - 1)])
+        Some(self.way[(farthest + usize::from(there)).min(last)])
     }
 
     fn search(&mut self, from: Point, target: Point, map: &Map) {
         self.target = Some(target);
         self.known = map.len();
         self.way.clear();
-        if map.clear(from, target, CLEARANCE_M / 2.0) {
-            self.way.push(target);
-            return;
-        }
-        let goal = cell(target);
-        let blocked = |at: (i32, i32)| {
-            let middle = middle(at);
-            at != goal
-                && map.known.iter().any(|&(_, place, radius_m)| {
-                    let needed_m = radius_m + RADIUS_M + CLEARANCE_M;
-                    place.distance_m(middle) < needed_m.min(place.distance_m(from) - CELL_M)
-                })
-        };
+        // The last point is the target itself; nothing but the points around obstacles lies between.
+        let mut nodes = vec![from];
+        nodes.extend(map.corners());
+        let goal = nodes.len();
+        nodes.push(target);
         let found = astar(
-            &cell(from),
-            |&at| {
-                neighbours(at)
-                    .filter(|&(next, _)| !blocked(next))
+            &0,
+            |&here| {
+                let reached = |next: usize| {
+                    let to = if next == goal {
+                        short_of(nodes[here], target)
+                    } else {
+                        nodes[next]
+                    };
+                    map.clear(nodes[here], to, CLEARANCE_M)
+                };
+                let step = |next: usize| (next, micrometres(nodes[here], nodes[next]));
+                (1..nodes.len())
+                    .filter(|&next| next != here && reached(next))
+                    .map(step)
                     .collect::<Vec<_>>()
             },
-            |&at| {
-                let (across, up) = ((at.0 - goal.0).unsigned_abs(), (at.1 - goal.1).unsigned_abs());
-                across.min(up) * SLANTING + (across.max(up) - across.min(up)) * STRAIGHT
-            },
-            |&at| at == goal,
+            |&here| micrometres(nodes[here], target),
+            |&here| here == goal,
         );
-        if let Some((cells, _)) = found {
-            self.way.extend(cells.iter().skip(1).map(|&at| middle(at)));
-            self.way.push(target);
+        if let Some((places, _)) = found {
+            self.way.extend(places.iter().skip(1).map(|&place| nodes[place]));
         }
     }
 }
 
-fn cell(place: Point) -> (i32, i32) {
-    let index = |at_m: f64, cells: i32| ((at_m / CELL_M) as i32).clamp(0, cells - 1);
-    (index(place.x_m, CELLS_X), index(place.y_m, CELLS_Y))
+/// Where the robot may stop on its way to a target: the arm does the rest.
+fn short_of(from: Point, target: Point) -> Point {
+    let left_m = (from.distance_m(target) - SHORT_M).max(0.0);
+    from.towards(from.direction_rad(target), left_m)
 }
 
-fn middle(cell: (i32, i32)) -> Point {
-    Point::new(
-        (f64::from(cell.0) + 0.5) * CELL_M,
-        (f64::from(cell.1) + 0.5) * CELL_M,
-    )
-}
-
-fn neighbours((x, y): (i32, i32)) -> impl Iterator<Item = ((i32, i32), u32)> {
-    let edge = ((RADIUS_M / CELL_M) as i32).max(1) + 1;
-    (-1..=1)
-        .flat_map(move |across| (-1..=1).map(move |up| (across, up)))
-        .filter_map(move |(across, up)| {
-            let next = (x + across, y + up);
-            let inside =
-                next.0 >= edge && next.1 >= edge && next.0 < CELLS_X - edge && next.1 < CELLS_Y - edge;
-            let cost = if across != 0 && up != 0 {
-                SLANTING
-            } else {
-                STRAIGHT
-            };
-            ((across, up) != (0, 0) && inside).then_some((next, cost))
-        })
+/// A distance as a whole number, which a search can add up without rounding.
+fn micrometres(from: Point, to: Point) -> u64 {
+    (from.distance_m(to) * 1e6) as u64
 }
 
 impl World {
