@@ -241,3 +241,61 @@ fn an_evaluation_in_the_world_does_not_allocate() {
         assert_eq!(counted.count_total, 0);
     }
 }
+
+#[test]
+fn every_mcu_output_is_followed_by_an_evaluation_and_an_interrupt_does_not_wait_for_one() {
+    let mut world = floor();
+    world.planning = false;
+    world.put_object(Point::new(12.0, 6.0));
+    let mut run = Run::new(world);
+    assert!(run.until(10.0, |run| run.active("roll") && run.world.robot.place.x_m > 8.3));
+    while !run.beat() {}
+    let beats = (1..).find(|_| run.beat()).expect("rolls end");
+    assert_eq!(
+        beats, 20,
+        "half a metre at half a metre a second, in beats of 50 ms, and then at once"
+    );
+    assert!(!run.beat(), "the next roll is under way");
+    run.world.order();
+    assert!(run.beat(), "an order is a priority interrupt");
+    assert!(!run.beat());
+}
+
+#[test]
+fn the_picture_shows_the_lit_tree() {
+    let mut run = Run::new(generate(3, Layout::default()));
+    run.until(20.0, |_| false);
+    let shown = picture(&run);
+    let lit: Vec<&str> = shown
+        .tree
+        .iter()
+        .filter(|lamp| lamp.active)
+        .map(|lamp| lamp.name.as_str())
+        .collect();
+    assert!(lit.len() >= 2 && shown.working.len() == 1, "{lit:?}");
+    assert!(
+        shown
+            .tree
+            .iter()
+            .filter(|lamp| lamp.level == "top")
+            .all(|lamp| lamp.listens)
+    );
+    let json = serde_json::to_value(&shown).expect("is plain data");
+    assert_eq!(
+        json["objects"].as_array().map(Vec::len),
+        Some(run.world.objects.len())
+    );
+    let drawn = adroit::draw::svg(run.control.hierarchy(), run.control.vocabulary());
+    assert_eq!(drawn.matches("class=\"rm on\"").count(), lit.len());
+    assert_eq!(
+        drawn.matches("SRM of").count(),
+        run.control.hierarchy().levels().len()
+    );
+}
+
+#[test]
+fn the_programs_are_in_their_standard_form() {
+    for program in [adroit::nest::PROGRAM, ONE_THRESHOLD] {
+        assert_eq!(adroit::language::format(program).as_deref(), Ok(program));
+    }
+}

@@ -19,7 +19,7 @@ pub const STIMULI: [&str; 16] = [
     "one-obstacle",
     "two-obstacles",
     "many-obstacles",
-    "person-in-the-way",
+    "person-near",
     "plan-ready",
     "bumped",
     "object-in-view",
@@ -55,6 +55,9 @@ const STATES: [&str; 5] = [
 const FULL: f64 = 0.99;
 /// Within reach, the arm still has this much to spare, metres.
 const SPARE_M: f64 = 0.05;
+
+/// A person is near within this, metres.
+const NEAR_M: f64 = 1.3;
 
 /// The vocabulary of the robot.
 #[must_use]
@@ -95,12 +98,11 @@ impl World {
         Some(Goal::object(site.id, spot.x_m, spot.y_m))
     }
 
-    fn person_in_the_way(&self, target: Point) -> bool {
-        let robot = self.robot.place;
-        self.persons.iter().any(|person| {
-            robot.distance_m(person.place) < 1.5
-                && between_rad(robot.direction_rad(target), robot.direction_rad(person.place)).abs() < 1.0
-        })
+    /// Someone is near enough to walk into a way that was planned without them.
+    fn person_near(&self) -> bool {
+        self.persons
+            .iter()
+            .any(|person| self.robot.place.distance_m(person.place) < NEAR_M)
     }
 }
 
@@ -117,7 +119,7 @@ impl Senses for World {
             "one-obstacle" => switch(self.faces(place(given)).count() == 1),
             "two-obstacles" => switch(self.faces(place(given)).count() == 2),
             "many-obstacles" => switch(self.faces(place(given)).count() > 2),
-            "person-in-the-way" => switch(self.person_in_the_way(place(given))),
+            "person-near" => switch(self.person_near()),
             "plan-ready" => {
                 self.planner.want(place(given));
                 switch(self.planning && self.planner.ready_for(place(given)))

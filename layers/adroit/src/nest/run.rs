@@ -8,6 +8,7 @@
 
 use serde::Serialize;
 
+use super::geometry::Point;
 use super::motor::Working;
 use super::world::World;
 use super::{BEAT_S, PROGRAM, vocabulary};
@@ -89,6 +90,7 @@ impl Run {
             self.ended = false;
             self.control.hierarchy_mut().evaluate(&self.world);
             self.call_units();
+            self.note_search();
             self.world.plan();
         }
         let (control, ended) = (&mut self.control, &mut self.ended);
@@ -141,6 +143,24 @@ impl Run {
             bumps: self.world.bumps,
             stranded: self.world.stranded,
             complete: self.world.nest_complete(),
+        }
+    }
+
+    /// Tells the robot's search patterns which of them is being followed.
+    fn note_search(&mut self) {
+        let (place, now_s) = (self.world.robot.place, self.world.now_s);
+        let hierarchy = self.control.hierarchy();
+        let sweeps = &mut self.world.robot.sweeps;
+        for sweep in [&mut sweeps.site, &mut sweeps.object, &mut sweeps.station] {
+            let followed = hierarchy
+                .active_path()
+                .filter_map(|rm| hierarchy.goal(rm))
+                .any(|goal| sweep.next(place) == Some(Point::new(goal.x_m, goal.y_m)));
+            if followed {
+                sweep.go(place, now_s);
+            } else {
+                sweep.pause();
+            }
         }
     }
 

@@ -9,6 +9,9 @@ const LOOK_OUTS: usize = 8;
 const MARGIN_M: f64 = 2.5;
 /// A look-out counts as visited from here on, metres; more than an obstacle standing on it keeps the robot away.
 const VISITED_M: f64 = 1.1;
+/// On its way to one look-out for longer than this the robot gives it up, seconds: twice what the longest way
+/// between two of them takes.
+const GIVE_UP_S: f64 = 60.0;
 
 /// The look-outs, around the floor.
 fn look_outs() -> [Point; LOOK_OUTS] {
@@ -32,6 +35,8 @@ fn look_outs() -> [Point; LOOK_OUTS] {
 pub(crate) struct Sweep {
     visited: [bool; LOOK_OUTS],
     ended_s: Option<f64>,
+    /// The look-out gone to, and since when, seconds.
+    going: Option<(usize, f64)>,
     /// Whether the round showed what was looked for.
     pub(crate) found: bool,
 }
@@ -42,8 +47,32 @@ impl Sweep {
         for (visited, look_out) in self.visited.iter_mut().zip(look_outs()) {
             *visited |= place.distance_m(look_out) < VISITED_M;
         }
+        self.give_up(now_s);
         if self.over() && self.ended_s.is_none() {
             self.ended_s = Some(now_s);
+        }
+    }
+
+    /// Notes that the robot is on its way to the next look-out.
+    pub(crate) fn go(&mut self, place: Point, now_s: f64) {
+        let next = self.nearest(place);
+        if self.going.map(|(going, _)| going) != next {
+            self.going = next.map(|next| (next, now_s));
+        }
+    }
+
+    /// The robot turned to something else.
+    pub(crate) fn pause(&mut self) {
+        self.going = None;
+    }
+
+    /// A look-out that cannot be reached counts as visited: the GSM reports failure, and the round goes on.
+    fn give_up(&mut self, now_s: f64) {
+        if let Some((going, since_s)) = self.going
+            && now_s - since_s > GIVE_UP_S
+        {
+            self.visited[going] = true;
+            self.going = None;
         }
     }
 
@@ -62,13 +91,17 @@ impl Sweep {
 
     /// The look-out to go to next: the nearest not yet visited; `None` when the round is over.
     pub(crate) fn next(&self, place: Point) -> Option<Point> {
-        let mut nearest: Option<(f64, Point)> = None;
-        for (visited, look_out) in self.visited.iter().zip(look_outs()) {
+        self.nearest(place).map(|next| look_outs()[next])
+    }
+
+    fn nearest(&self, place: Point) -> Option<usize> {
+        let mut nearest: Option<(f64, usize)> = None;
+        for (number, (visited, look_out)) in self.visited.iter().zip(look_outs()).enumerate() {
             let distance_m = place.distance_m(look_out);
             if !visited && nearest.is_none_or(|(best_m, _)| distance_m < best_m) {
-                nearest = Some((distance_m, look_out));
+                nearest = Some((distance_m, number));
             }
         }
-        nearest.map(|(_, look_out)| look_out)
+        nearest.map(|(_, number)| number)
     }
 }
