@@ -97,19 +97,18 @@ impl<'a> Checker<'a> {
             }
             _ => {}
         }
-        if let Some(called) = &rm.subroutine {
-            if members(program, &Above::Subroutine(&called.name))
+        if let Some(called) = &rm.subroutine
+            && members(program, &Above::Subroutine(&called.name))
                 .next()
                 .is_none()
-            {
-                let names = program.rms.iter().filter_map(|known| match &known.superordinate {
-                    Superordinate::Subroutine(name) => Some(name.name.as_str()),
-                    _ => None,
-                });
-                let message = format!("no rm reports to subroutine `{called}`");
-                self.problems
-                    .push(Problem::new(called.at, message).near(&called.name, names));
-            }
+        {
+            let names = program.rms.iter().filter_map(|known| match &known.superordinate {
+                Superordinate::Subroutine(name) => Some(name.name.as_str()),
+                _ => None,
+            });
+            let message = format!("no rm reports to subroutine `{called}`");
+            self.problems
+                .push(Problem::new(called.at, message).near(&called.name, names));
         }
     }
 

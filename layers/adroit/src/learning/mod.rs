@@ -37,7 +37,7 @@ pub const PROPOSED: f64 = 6.9;
 pub const APPLIED: f64 = 18.4;
 /// Most pairs of an unused cue and an RM under observation.
 const PAIRS_MAX: usize = 4096;
-/// Hits at which evidence starts to be trusted for an estimate of chance, seconds of listening.
+/// An RM must have listened this long before its known cue's rate is trusted, seconds.
 const LISTENED_LEAST_S: f64 = 5.0;
 
 /// What the learner found out about a cue and an RM.
@@ -83,7 +83,7 @@ pub struct Learner {
     onset_s: Vec<f64>,
     pairs: Vec<Pair>,
     candidates: Vec<Candidate>,
-    /// The text length of the program the candidates were taken from, as a sign that it changed.
+    /// How many commands were applied when the candidates were taken up, as a sign that the program changed.
     commands: Option<usize>,
     before_s: f64,
 }
