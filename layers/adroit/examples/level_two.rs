@@ -63,7 +63,7 @@ fn level_two(hierarchy: &mut Hierarchy, wires: &Wires, vocabulary: &Vocabulary) 
 
 /// Level 1: to and fro.
 fn wander(beat: u32) -> f64 {
-    if beat / 10 % 2 == 0 { 0.3 } else { -0.3 }
+    if (beat / 10).is_multiple_of(2) { 0.3 } else { -0.3 }
 }
 
 /// Level 0: pushed back by a wall at 6, whoever wants to go there.

@@ -26,6 +26,7 @@ pub struct Running {
     applied: Vec<Applied>,
     vocabulary: Vocabulary,
     hierarchy: Hierarchy,
+    revision: u64,
 }
 
 impl Running {
@@ -40,6 +41,7 @@ impl Running {
             applied: Vec::new(),
             vocabulary,
             hierarchy,
+            revision: 0,
         })
     }
 
@@ -58,6 +60,12 @@ impl Running {
     #[must_use]
     pub fn vocabulary(&self) -> &Vocabulary {
         &self.vocabulary
+    }
+
+    /// Grows with every command applied or taken back: places in the hierarchy may have changed since.
+    #[must_use]
+    pub fn revision(&self) -> u64 {
+        self.revision
     }
 
     /// The commands applied so far, first to last.
@@ -111,6 +119,7 @@ impl Running {
     fn replace(&mut self, mut hierarchy: Hierarchy) {
         hierarchy.carry_over(&self.hierarchy);
         self.hierarchy = hierarchy;
+        self.revision += 1;
     }
 }
 

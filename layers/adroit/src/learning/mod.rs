@@ -83,20 +83,21 @@ pub struct Learner {
     onset_s: Vec<f64>,
     pairs: Vec<Pair>,
     candidates: Vec<Candidate>,
-    /// How many commands were applied when the candidates were taken up, as a sign that the program changed.
-    commands: Option<usize>,
+    /// The revision of the program that the candidates were taken from.
+    revision: Option<u64>,
     before_s: f64,
 }
 
 /// An RM with one of its exciting inputs.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 struct Candidate {
+    /// Its place, in the revision that the learner knows.
     rm: MechanismIndex,
+    name: String,
     known: StimulusId,
     magnitude: f64,
     listened_s: f64,
     covered_s: f64,
-    onsets: u32,
 }
 
 impl Learner {
@@ -121,7 +122,7 @@ impl Learner {
         let passed_s = (now_s - self.before_s).max(0.0);
         self.before_s = now_s;
         let onsets = self.onsets(now_s, senses);
-        self.count_chance(now_s, passed_s, &onsets, running);
+        self.count_chance(now_s, passed_s, running);
         for &cue in &onsets {
             self.open_trials(now_s, cue, running);
         }
@@ -149,10 +150,9 @@ impl Learner {
     pub fn forget(&mut self, cue: &str, rm: &str, running: &mut Running) -> Result<(), Problems> {
         running.apply(&format!("remove stimulus {cue} from rm {rm}."))?;
         let vocabulary = running.vocabulary();
-        let hierarchy = running.hierarchy();
+        let candidates = &self.candidates;
         self.pairs.retain(|pair| {
-            vocabulary.stimulus_name(pair.cue) != cue
-                || hierarchy.name(self.candidates[pair.candidate].rm) != rm
+            vocabulary.stimulus_name(pair.cue) != cue || candidates[pair.candidate].name != rm
         });
         Ok(())
     }
@@ -163,11 +163,11 @@ impl Learner {
         let count = vocabulary.stimuli().count();
         self.present.resize(count, false);
         self.onset_s.resize(count, f64::NEG_INFINITY);
-        let commands = running.list().len();
-        if self.commands == Some(commands) {
+        let revision = running.revision();
+        if self.revision == Some(revision) {
             return;
         }
-        self.commands = Some(commands);
+        self.revision = Some(revision);
         let hierarchy = running.hierarchy();
         let used = |stimulus: StimulusId| {
             hierarchy.mechanisms().iter().enumerate().any(|(place, _)| {
@@ -186,11 +186,11 @@ impl Learner {
                     if input.magnitude > 0.0 && input.stimulus != StimulusId::ALWAYS {
                         self.candidates.push(Candidate {
                             rm,
+                            name: hierarchy.name(rm).to_owned(),
                             known: input.stimulus,
                             magnitude: input.magnitude,
                             listened_s: 0.0,
                             covered_s: 0.0,
-                            onsets: 0,
                         });
                     }
                 }
@@ -204,12 +204,11 @@ impl Learner {
         for (place, candidate) in self.candidates.iter_mut().enumerate() {
             let old = before
                 .iter()
-                .position(|old| old.rm == candidate.rm && old.known == candidate.known);
+                .position(|old| old.name == candidate.name && old.known == candidate.known);
             if let Some(old) = old {
-                *candidate = Candidate {
-                    magnitude: candidate.magnitude,
-                    ..before[old]
-                };
+                let old = &before[old];
+                candidate.listened_s = old.listened_s;
+                candidate.covered_s = old.covered_s;
             }
             for &cue in &unused {
                 if self.pairs.len() < PAIRS_MAX {
@@ -245,11 +244,10 @@ impl Learner {
 
     /// How much of an RM's listening time lies within the window of an onset of its known cue: what a cue
     /// that has nothing to do with it would hit by chance.
-    fn count_chance(&mut self, now_s: f64, passed_s: f64, onsets: &[StimulusId], running: &Running) {
+    fn count_chance(&mut self, now_s: f64, passed_s: f64, running: &Running) {
         for candidate in &mut self.candidates {
             if running.hierarchy().listens(candidate.rm) {
                 candidate.listened_s += passed_s;
-                candidate.onsets += u32::from(onsets.contains(&candidate.known));
                 // The window reaches as far back as forward, and what is behind counts just as much.
                 if now_s - self.onset_s[usize::from(candidate.known.0)] <= WINDOW_S {
                     candidate.covered_s += 2.0 * passed_s;
@@ -298,7 +296,7 @@ impl Learner {
         let vocabulary = running.vocabulary();
         Association {
             cue: vocabulary.stimulus_name(pair.cue).to_owned(),
-            rm: running.hierarchy().name(candidate.rm).to_owned(),
+            rm: candidate.name.clone(),
             known: vocabulary.stimulus_name(candidate.known).to_owned(),
             magnitude: candidate.magnitude,
             experiences: pair.trials,

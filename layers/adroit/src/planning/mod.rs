@@ -1,6 +1,6 @@
 //! Look-ahead for go-to: a way around the obstacles seen so far, searched between two evaluations.
 //!
-//! Must never: run inside an evaluation. An evaluation notes where it wants to go ([`Planner::want`]) and
+//! Must never: run inside an evaluation. An evaluation notes where it wants to go and
 //! reads the way found before; a target that is new is approached by the sequential RMs until the search,
 //! right after that evaluation, has answered. Unknown floor counts as free, and what then stands in the way
 //! is met by the sequential RMs or, once seen, by a new search.
