@@ -1,0 +1,146 @@
+//! The `adroit` commands, as a library so that another tool can offer them under its own name.
+
+mod figures;
+mod live;
+mod run;
+
+use std::fs;
+use std::io::{self, Read};
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use clap::{Args, Subcommand};
+
+use crate::draw::svg;
+use crate::hierarchy::Hierarchy;
+use crate::language::{self, Problems, format};
+use crate::nest::{PROGRAM, vocabulary};
+
+/// Arguments of `adroit`.
+#[derive(Args, Clone, Debug)]
+pub struct AdroitArgs {
+    #[command(subcommand)]
+    what: What,
+}
+
+#[derive(Subcommand, Clone, Debug)]
+enum What {
+    /// Check a program and report everything that is wrong with it
+    Check(File),
+    /// Print a program in its standard form
+    Format {
+        #[command(flatten)]
+        file: File,
+        /// Write the file instead of printing it
+        #[arg(long)]
+        write: bool,
+    },
+    /// Draw the hierarchy of a program as SVG
+    Graph(File),
+    /// Run a program in a seeded world
+    Run(run::RunArgs),
+    /// Apply a command to a running hierarchy
+    Apply {
+        #[command(flatten)]
+        at: live::Address,
+        /// One or more statements of the language
+        command: String,
+    },
+    /// List the commands applied to a running hierarchy
+    List(live::Address),
+    /// Take back the latest command applied to a running hierarchy
+    Undo(live::Address),
+    /// Print the program of a running hierarchy with all that was applied to it
+    Save(live::Address),
+    /// Run many seeded worlds and print figures
+    Figures(figures::FiguresArgs),
+}
+
+/// The program to work on.
+#[derive(Args, Clone, Debug)]
+struct File {
+    /// A program; `-` reads from standard input, nothing takes the nest-building program
+    file: Option<PathBuf>,
+}
+
+impl File {
+    /// The text, and the name to put before its problems.
+    fn read(&self) -> io::Result<(String, String)> {
+        match &self.file {
+            None => Ok((PROGRAM.to_owned(), "nest.adroit".to_owned())),
+            Some(path) if path == Path::new("-") => {
+                let mut text = String::new();
+                io::stdin().read_to_string(&mut text)?;
+                Ok((text, "standard input".to_owned()))
+            }
+            Some(path) => Ok((fs::read_to_string(path)?, path.display().to_string())),
+        }
+    }
+
+    fn load(&self) -> Result<Hierarchy, String> {
+        let (text, name) = self.read().map_err(|error| self.unreadable(&error))?;
+        language::load(&text, &vocabulary()).map_err(|problems| placed(&name, &problems))
+    }
+
+    fn unreadable(&self, error: &io::Error) -> String {
+        match &self.file {
+            Some(path) => format!("{}: {error}", path.display()),
+            None => error.to_string(),
+        }
+    }
+}
+
+/// Every problem on a line of its own behind the name of its file.
+fn placed(name: &str, problems: &Problems) -> String {
+    let lines: Vec<String> = problems
+        .0
+        .iter()
+        .map(|problem| format!("{name}:{problem}"))
+        .collect();
+    lines.join("\n")
+}
+
+/// Carries out a command; results go to standard output, what is wrong to standard error.
+#[must_use]
+pub fn command(args: AdroitArgs) -> ExitCode {
+    let result = match args.what {
+        What::Check(file) => file.load().map(|hierarchy| {
+            println!(
+                "{} RMs at {} levels; no problems",
+                hierarchy.mechanisms().len(),
+                hierarchy.levels().len()
+            );
+        }),
+        What::Format { file, write } => formatted(&file, write),
+        What::Graph(file) => file
+            .load()
+            .map(|hierarchy| print!("{}", svg(&hierarchy, &vocabulary()))),
+        What::Run(args) => run::run(&args),
+        What::Apply { at, command } => at.ask(&live::Request::Apply(command)),
+        What::List(at) => at.ask(&live::Request::List),
+        What::Undo(at) => at.ask(&live::Request::Undo),
+        What::Save(at) => at.ask(&live::Request::Save),
+        What::Figures(args) => figures::figures(&args),
+    };
+    match result {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(problem) => {
+            eprintln!("{problem}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn formatted(file: &File, write: bool) -> Result<(), String> {
+    let (text, name) = file.read().map_err(|error| file.unreadable(&error))?;
+    let formatted = format(&text).map_err(|problems| placed(&name, &problems))?;
+    match &file.file {
+        Some(path) if write && path != Path::new("-") => {
+            fs::write(path, formatted).map_err(|error| file.unreadable(&error))
+        }
+        _ => {
+            print!("{formatted}");
+            Ok(())
+        }
+    }
+}
