@@ -49,7 +49,11 @@ impl Control {
         let thread = std::thread::Builder::new()
             .name("control".into())
             .spawn(move || accept(&listener, &shared, &leaving))?;
-        Ok(Control { path, leave, thread: Some(thread) })
+        Ok(Control {
+            path,
+            leave,
+            thread: Some(thread),
+        })
     }
 }
 
@@ -62,7 +66,10 @@ pub fn claim(name: &str) -> io::Result<()> {
     match UnixStream::connect(&path) {
         Ok(_) => Err(io::Error::new(
             io::ErrorKind::AddrInUse,
-            format!("a daemon runs {name:?} already (it answers at {}); stop it, or choose another --name", path.display()),
+            format!(
+                "a daemon runs {name:?} already (it answers at {}); stop it, or choose another --name",
+                path.display()
+            ),
         )),
         Err(_) => Ok(()),
     }
@@ -95,7 +102,12 @@ fn accept(listener: &UnixListener, shared: &Arc<Shared>, leaving: &AtomicBool) {
                     let _ = answer_all(stream, &shared);
                     counted.fetch_sub(1, Ordering::Relaxed);
                 };
-                if std::thread::Builder::new().name("caller".into()).stack_size(256 << 10).spawn(answer).is_err() {
+                if std::thread::Builder::new()
+                    .name("caller".into())
+                    .stack_size(256 << 10)
+                    .spawn(answer)
+                    .is_err()
+                {
                     callers.fetch_sub(1, Ordering::Relaxed);
                 }
             }
@@ -111,7 +123,11 @@ fn answer_all(stream: UnixStream, shared: &Shared) -> io::Result<()> {
     let mut plugged = None;
     let ended = converse(&mut connection, shared, &mut plugged);
     if let Some(number) = plugged {
-        let why = if matches!(ended, Ok(Farewell::Said)) { "detached" } else { "died" };
+        let why = if matches!(ended, Ok(Farewell::Said)) {
+            "detached"
+        } else {
+            "died"
+        };
         shared.plugs.detach(number, why);
     }
     ended.map(drop)
@@ -143,8 +159,12 @@ fn converse(connection: &mut Connection, shared: &Shared, plugged: &mut Option<u
                 greeted = versions == Versions::ours();
                 greet(&versions, &program, shared)
             }
-            _ if !greeted => Reply::Refused { reasons: vec!["say hello first".into()] },
-            Request::Plug(_) if plugged.is_some() => Reply::Refused { reasons: vec!["one layer a connection".into()] },
+            _ if !greeted => Reply::Refused {
+                reasons: vec!["say hello first".into()],
+            },
+            Request::Plug(_) if plugged.is_some() => Reply::Refused {
+                reasons: vec!["one layer a connection".into()],
+            },
             Request::Plug(plug) => match shared.plugs.attach(plug, &shared.domain) {
                 Ok(number) => {
                     *plugged = Some(number);
@@ -164,11 +184,19 @@ fn converse(connection: &mut Connection, shared: &Shared, plugged: &mut Option<u
 fn greet(theirs: &Versions, program: &str, shared: &Shared) -> Reply {
     let ours = Versions::ours();
     if *theirs == ours {
-        return Reply::Welcome { versions: ours, creature: shared.name.clone() };
+        return Reply::Welcome {
+            versions: ours,
+            creature: shared.name.clone(),
+        };
     }
-    let reason = format!("{program} was built for {theirs}; this daemon for {ours}: build both from one version");
-    shared.events.note("layer", Some(program), format!("refused: {reason}"));
-    Reply::Refused { reasons: vec![reason] }
+    let reason =
+        format!("{program} was built for {theirs}; this daemon for {ours}: build both from one version");
+    shared
+        .events
+        .note("layer", Some(program), format!("refused: {reason}"));
+    Reply::Refused {
+        reasons: vec![reason],
+    }
 }
 
 fn answer(request: Request, shared: &Shared) -> Reply {
@@ -178,7 +206,9 @@ fn answer(request: Request, shared: &Shared) -> Reply {
         Request::Events { after } => Reply::Events(shared.events.after(after)),
         Request::Halt => {
             shared.halt.halt(Causes::EMERGENCY);
-            shared.events.note("halt", None, "emergency stop from the control socket");
+            shared
+                .events
+                .note("halt", None, "emergency stop from the control socket");
             Reply::Done
         }
         Request::Reset => match shared.halt.reset() {
@@ -186,8 +216,12 @@ fn answer(request: Request, shared: &Shared) -> Reply {
                 shared.events.note("halt", None, "reset from the control socket");
                 Reply::Done
             }
-            Err(reason) => Reply::Refused { reasons: vec![reason] },
+            Err(reason) => Reply::Refused {
+                reasons: vec![reason],
+            },
         },
-        Request::Hello { .. } | Request::Plug(_) | Request::Unplug => Reply::Refused { reasons: vec!["not now".into()] },
+        Request::Hello { .. } | Request::Plug(_) | Request::Unplug => Reply::Refused {
+            reasons: vec!["not now".into()],
+        },
     }
 }

@@ -21,7 +21,10 @@ pub struct Events {
 impl Events {
     /// No event yet; times count from `began`.
     pub fn new(began: Time) -> Events {
-        Events { began, kept: Mutex::default() }
+        Events {
+            began,
+            kept: Mutex::default(),
+        }
     }
 
     /// Notes an event, and logs it.
@@ -35,7 +38,13 @@ impl Events {
         if kept.1.len() == EVENTS_MAX {
             kept.1.pop_front();
         }
-        kept.1.push_back(Event { number, time_s, kind: kind.into(), layer: layer.map(Into::into), text });
+        kept.1.push_back(Event {
+            number,
+            time_s,
+            kind: kind.into(),
+            layer: layer.map(Into::into),
+            text,
+        });
     }
 
     /// Events after the `after`-th, oldest first.

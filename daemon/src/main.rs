@@ -22,13 +22,16 @@ static ALLOCATOR: daemon::alloc::Counting = daemon::alloc::Counting;
 
 /// Runs a subsumption creature on real-time threads, with its wires in shared memory.
 #[derive(Parser, Debug)]
-#[command(version, after_help = "Examples:\n  \
+#[command(
+    version,
+    after_help = "Examples:\n  \
     subsumed                                the built-in creature Allen in its office\n  \
     subsumed --creature mine.toml           a creature of your own\n  \
     subsumed --headless --seconds 60        one minute, nothing to look at\n  \
     subsumed --name jerry --page-port 0     a second instance beside the first\n\n\
     Ctrl-C halts the body, then leaves.\n\
-    Status: 0 after a signal or --seconds; 1 when the host refuses; 2 for bad input.")]
+    Status: 0 after a signal or --seconds; 1 when the host refuses; 2 for bad input."
+)]
 struct Options {
     /// The creature file; without it, Allen
     #[arg(long, value_name = "FILE")]
@@ -77,7 +80,10 @@ fn load(options: &Options) -> Result<Creature, String> {
         None => Source::new("allen.toml (built in)", allen::CREATURE),
         Some(path) => {
             let text = std::fs::read_to_string(path).map_err(|e| {
-                format!("{}: cannot be read: {e}; expected the path of a creature file (TOML)", path.display())
+                format!(
+                    "{}: cannot be read: {e}; expected the path of a creature file (TOML)",
+                    path.display()
+                )
             })?;
             Source::new(path.display().to_string(), text)
         }
@@ -87,7 +93,9 @@ fn load(options: &Options) -> Result<Creature, String> {
     if let Some(name) = &options.name {
         let sound = |c: char| c.is_ascii_alphanumeric() || c == '-' || c == '_';
         if name.is_empty() || name.len() > 48 || !name.chars().all(sound) {
-            return Err(format!("--name {name:?}: expected 1 to 48 letters, digits, '-' or '_'"));
+            return Err(format!(
+                "--name {name:?}: expected 1 to 48 letters, digits, '-' or '_'"
+            ));
         }
         creature.name = name.clone();
     }
@@ -106,10 +114,14 @@ fn run(options: &Options, creature: Creature) -> Result<(), String> {
     let name = creature.name.clone();
     control::claim(&name).map_err(|e| e.to_string())?;
     let domain = Domain::join(&name).map_err(|e| e.to_string())?;
-    let owned = domain.own(&name, output_ports(&creature).count()).map_err(|e| e.to_string())?;
+    let owned = domain
+        .own(&name, output_ports(&creature).count())
+        .map_err(|e| e.to_string())?;
     let machine = Machine::new(creature, &kinds(), owned.page().clone(), None);
-    let running = running::start(&name, machine, owned, domain).map_err(|e| format!("starting threads: {e}"))?;
-    let control = Control::open(&name, running.shared.clone()).map_err(|e| format!("the control socket: {e}"));
+    let running =
+        running::start(&name, machine, owned, domain).map_err(|e| format!("starting threads: {e}"))?;
+    let control =
+        Control::open(&name, running.shared.clone()).map_err(|e| format!("the control socket: {e}"));
     let page = serve_page(options, &running);
     let result = control.and_then(|control| page.map(|page| (control, page)));
     let result = result.map(|(control, page)| {
@@ -129,7 +141,9 @@ fn serve_page(options: &Options, running: &Running) -> Result<Option<page::Serve
         return Ok(None);
     }
     let address = SocketAddr::from(([127, 0, 0, 1], options.page_port));
-    page::serve(address, Arc::new(View(running.shared.clone()))).map(Some).map_err(|e| e.to_string())
+    page::serve(address, Arc::new(View(running.shared.clone())))
+        .map(Some)
+        .map_err(|e| e.to_string())
 }
 
 fn introduce(running: &Running, page: Option<&page::Server>) {
@@ -140,10 +154,17 @@ fn introduce(running: &Running, page: Option<&page::Server>) {
         println!("BEST EFFORT: the host does not grant real time");
         running.refusals.iter().for_each(|r| println!("  {r}"));
     }
-    let layers: Vec<String> =
-        shared.creature.layers.iter().map(|l| format!("level {} {} ({})", l.level, l.name, l.period)).collect();
+    let layers: Vec<String> = shared
+        .creature
+        .layers
+        .iter()
+        .map(|l| format!("level {} {} ({})", l.level, l.name, l.period))
+        .collect();
     println!("{} is alive: {}", shared.name, layers.join(", "));
-    println!("wires: iceoryx2 service {}", ipc::wire::iceoryx::service_of(&shared.name));
+    println!(
+        "wires: iceoryx2 service {}",
+        ipc::wire::iceoryx::service_of(&shared.name)
+    );
     if let Some(page) = page {
         println!("look at it: http://{}/", page.address());
     }

@@ -81,8 +81,19 @@ impl Plugs {
                 }
             }
         }
-        let state = Mutex::new(State { hands, version: 1, ..State::default() });
-        Plugs { creature, directory, inputs, outputs, state, events }
+        let state = Mutex::new(State {
+            hands,
+            version: 1,
+            ..State::default()
+        });
+        Plugs {
+            creature,
+            directory,
+            inputs,
+            outputs,
+            state,
+            events,
+        }
     }
 
     /// What the creature shows to newcomers, attached layers included.
@@ -124,7 +135,11 @@ impl Plugs {
         let result = self.try_attach(&plug, domain);
         let (layer, pid) = (plug.layer.clone(), plug.pid);
         match &result {
-            Ok(_) => self.events.note("layer", Some(&layer), format!("layer {layer} (pid {pid}) attached")),
+            Ok(_) => self.events.note(
+                "layer",
+                Some(&layer),
+                format!("layer {layer} (pid {pid}) attached"),
+            ),
             Err(reasons) => {
                 let text = format!("layer {layer} (pid {pid}) refused: {}", reasons.join("; "));
                 self.events.note("layer", Some(&layer), text);
@@ -141,7 +156,11 @@ impl Plugs {
         // Mapping may take a while; nothing is locked meanwhile.
         let page = domain.map(&plug.owner).map_err(|e| vec![e.to_string()])?;
         if page.len() < plug.outputs.len() {
-            return Err(vec![format!("{} outputs are announced, {} wires shared", plug.outputs.len(), page.len())]);
+            return Err(vec![format!(
+                "{} outputs are announced, {} wires shared",
+                plug.outputs.len(),
+                page.len()
+            )]);
         }
         let mut state = self.lock();
         if state.attached.iter().any(|a| a.plug.layer == plug.layer) {
@@ -153,7 +172,12 @@ impl Plugs {
         for tap in &plug.taps {
             taps.push(self.join(&mut state, number, plug, tap, &page)?);
         }
-        state.attached.push(Attached { number, plug: plug.clone(), page, taps });
+        state.attached.push(Attached {
+            number,
+            plug: plug.clone(),
+            page,
+            taps,
+        });
         state.version += 1;
         Ok(number)
     }
@@ -166,7 +190,11 @@ impl Plugs {
         tap: &PlugTap,
         page: &Arc<Page>,
     ) -> Result<AttachedTap, Vec<String>> {
-        let index = plug.outputs.iter().position(|o| o.name == tap.from).expect("checked");
+        let index = plug
+            .outputs
+            .iter()
+            .position(|o| o.name == tap.from)
+            .expect("checked");
         let reader = page.reader(index, plug.outputs[index].kind).expect("checked");
         let gauge = Arc::new(TapGauge::default());
         let end = TapEnd {
@@ -185,15 +213,24 @@ impl Plugs {
             for hand in &mut state.hands {
                 let _ = hand.commands.push(Command::Release(number));
             }
-            return Err(vec![format!("the layer of {} does not take up taps; is it beating?", tap.to)]);
+            return Err(vec![format!(
+                "the layer of {} does not take up taps; is it beating?",
+                tap.to
+            )]);
         }
-        Ok(AttachedTap { tap: tap.clone(), gauge, reader })
+        Ok(AttachedTap {
+            tap: tap.clone(),
+            gauge,
+            reader,
+        })
     }
 
     /// Lets an attached layer go, for the reason given.
     pub fn detach(&self, number: u32, why: &str) {
         let mut state = self.lock();
-        let Some(index) = state.attached.iter().position(|a| a.number == number) else { return };
+        let Some(index) = state.attached.iter().position(|a| a.number == number) else {
+            return;
+        };
         let attached = state.attached.remove(index);
         state.version += 1;
         for hand in &mut state.hands {
@@ -202,7 +239,13 @@ impl Plugs {
         }
         drop(state);
         let Plug { layer, pid, .. } = &attached.plug;
-        let longest = attached.plug.taps.iter().map(|t| t.time_constant).max().unwrap_or(Span::ZERO);
+        let longest = attached
+            .plug
+            .taps
+            .iter()
+            .map(|t| t.time_constant)
+            .max()
+            .unwrap_or(Span::ZERO);
         let text = format!("layer {layer} (pid {pid}) {why}; its taps run out within {longest}");
         self.events.note("layer", Some(layer), text);
     }
@@ -217,11 +260,29 @@ impl Plugs {
         };
         let attached = self.attached();
         let taken = self.directory.layers.contains(&plug.layer);
-        against(taken || attached.iter().any(|a| a.plug.layer == plug.layer), format!("there is a layer {:?} already", plug.layer));
-        against(attached.len() >= outsiders.layers_max, format!("{} layers are attached, the most allowed", attached.len()));
-        against(plug.level > outsiders.level_max, format!("level {} is above {}, the highest allowed", plug.level, outsiders.level_max));
-        against(plug.outputs.len() > ipc::wire::WIRES_MAX, "too many outputs".into());
-        against(plug.layer.len() > 48 || plug.layer.is_empty(), "the layer's name is not one".into());
+        against(
+            taken || attached.iter().any(|a| a.plug.layer == plug.layer),
+            format!("there is a layer {:?} already", plug.layer),
+        );
+        against(
+            attached.len() >= outsiders.layers_max,
+            format!("{} layers are attached, the most allowed", attached.len()),
+        );
+        against(
+            plug.level > outsiders.level_max,
+            format!(
+                "level {} is above {}, the highest allowed",
+                plug.level, outsiders.level_max
+            ),
+        );
+        against(
+            plug.outputs.len() > ipc::wire::WIRES_MAX,
+            "too many outputs".into(),
+        );
+        against(
+            plug.layer.len() > 48 || plug.layer.is_empty(),
+            "the layer's name is not one".into(),
+        );
         for tap in &plug.taps {
             self.reasons_against_tap(plug, tap, &mut against);
         }
@@ -230,21 +291,53 @@ impl Plugs {
 
     fn reasons_against_tap(&self, plug: &Plug, tap: &PlugTap, against: &mut impl FnMut(bool, String)) {
         let to = &tap.to;
-        let ports = if tap.how == How::Suppress { &self.directory.inputs } else { &self.directory.outputs };
+        let ports = if tap.how == How::Suppress {
+            &self.directory.inputs
+        } else {
+            &self.directory.outputs
+        };
         let target = ports.iter().find(|p| p.name == *to);
         let source = plug.outputs.iter().find(|o| o.name == tap.from);
-        let places = if tap.how == How::Suppress { &self.inputs } else { &self.outputs };
-        against(target.is_none() || !places.contains_key(to), format!("there is no such port {to} to tap"));
-        against(source.is_none(), format!("{} is not among the layer's outputs", tap.from));
-        against(!self.directory.open_taps.contains(to), format!("the creature does not open {to} to taps from outside"));
-        against(self.directory.reflexes.contains(to), format!("{to} is part of the halt channel"));
+        let places = if tap.how == How::Suppress {
+            &self.inputs
+        } else {
+            &self.outputs
+        };
+        against(
+            target.is_none() || !places.contains_key(to),
+            format!("there is no such port {to} to tap"),
+        );
+        against(
+            source.is_none(),
+            format!("{} is not among the layer's outputs", tap.from),
+        );
+        against(
+            !self.directory.open_taps.contains(to),
+            format!("the creature does not open {to} to taps from outside"),
+        );
+        against(
+            self.directory.reflexes.contains(to),
+            format!("{to} is part of the halt channel"),
+        );
         let longest = self.creature.outsiders.time_constant_max;
-        against(tap.time_constant > longest, format!("the time constant {} is above {longest}", tap.time_constant));
-        against(tap.time_constant == Span::ZERO, "a tap needs a time constant".into());
+        against(
+            tap.time_constant > longest,
+            format!("the time constant {} is above {longest}", tap.time_constant),
+        );
+        against(
+            tap.time_constant == Span::ZERO,
+            "a tap needs a time constant".into(),
+        );
         let Some(target) = target else { return };
-        against(target.level.is_none_or(|l| l >= plug.level), format!("{to} is not of a level below {}", plug.level));
+        against(
+            target.level.is_none_or(|l| l >= plug.level),
+            format!("{to} is not of a level below {}", plug.level),
+        );
         let kinds: (Option<Kind>, Kind) = (source.map(|s| s.kind), target.kind);
         let differ = tap.how == How::Suppress && kinds.0.is_some_and(|kind| kind != kinds.1);
-        against(differ, format!("{} does not carry what {to} takes, {}", tap.from, kinds.1));
+        against(
+            differ,
+            format!("{} does not carry what {to} takes, {}", tap.from, kinds.1),
+        );
     }
 }

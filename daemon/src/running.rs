@@ -54,7 +54,11 @@ pub struct Shared {
 impl Shared {
     /// The newest status.
     pub fn status(&self) -> Value {
-        let status = self.status.lock().expect("nobody panics holding the status").clone();
+        let status = self
+            .status
+            .lock()
+            .expect("nobody panics holding the status")
+            .clone();
         Value::clone(&status)
     }
 }
@@ -96,7 +100,15 @@ impl Beats for MotorBeats {
 pub fn start(name: &str, machine: Machine, owned: OwnedPage, domain: Domain) -> std::io::Result<Running> {
     let began = clock::monotonic();
     let events = Arc::new(Events::new(began));
-    let Machine { creature, page, stations, hands, body, taps, halt } = machine;
+    let Machine {
+        creature,
+        page,
+        stations,
+        hands,
+        body,
+        taps,
+        halt,
+    } = machine;
     let directory = Directory::of(&creature, name);
     let floor = body.as_ref().map_or(Value::Null, |b| b.world.floor());
     let plugs = Plugs::new(creature.clone(), directory, hands, events.clone());
@@ -135,12 +147,30 @@ pub fn start(name: &str, machine: Machine, owned: OwnedPage, domain: Domain) -> 
         };
         let (name, level, period) = (spec.name.clone(), spec.level, spec.period);
         let gauge = station.gauge.clone();
-        let thread =
-            executor::start(plan, begin, LayerBeats(station.running), gauge.clone(), halt.clone(), stop.clone())?;
-        keep(&mut beating, &mut records, &mut refusals, thread, (&name, Some(level), period, gauge));
+        let thread = executor::start(
+            plan,
+            begin,
+            LayerBeats(station.running),
+            gauge.clone(),
+            halt.clone(),
+            stop.clone(),
+        )?;
+        keep(
+            &mut beating,
+            &mut records,
+            &mut refusals,
+            thread,
+            (&name, Some(level), period, gauge),
+        );
     }
     let view = Arc::new(Mutex::new(json!({})));
-    if let Some(Embodied { motor, world, link, gauge }) = body {
+    if let Some(Embodied {
+        motor,
+        world,
+        link,
+        gauge,
+    }) = body
+    {
         let period = motor.period();
         let plan = Plan {
             name: "motor".into(),
@@ -150,30 +180,56 @@ pub fn start(name: &str, machine: Machine, owned: OwnedPage, domain: Domain) -> 
             cpu: None,
             overrun: Overrun::Skip,
         };
-        let thread = executor::start(plan, begin, MotorBeats(motor), gauge.clone(), halt.clone(), stop.clone())?;
-        keep(&mut beating, &mut records, &mut refusals, thread, ("motor", None, period, gauge));
+        let thread = executor::start(
+            plan,
+            begin,
+            MotorBeats(motor),
+            gauge.clone(),
+            halt.clone(),
+            stop.clone(),
+        )?;
+        keep(
+            &mut beating,
+            &mut records,
+            &mut refusals,
+            thread,
+            ("motor", None, period, gauge),
+        );
         helpers.push(live(world, link, period, view.clone(), leave.clone())?);
     }
     refusals.dedup();
     helpers.push(keeper(owned, shared.clone(), leave.clone())?);
-    let net = output_ports(&creature).enumerate().map(|(i, (name, port, _))| Watched {
-        name: name.to_string(),
-        unit: port.unit.into(),
-        reader: page.reader(i, port.kind).expect("the page has a cell for each output"),
-    });
+    let net = output_ports(&creature)
+        .enumerate()
+        .map(|(i, (name, port, _))| Watched {
+            name: name.to_string(),
+            unit: port.unit.into(),
+            reader: page
+                .reader(i, port.kind)
+                .expect("the page has a cell for each output"),
+        });
     let net: Vec<Watched> = net.collect();
     let watched_taps = taps.iter().map(|filed| WatchedTap {
         how: filed.tap.how,
         from: filed.tap.from.to_string(),
         to: filed.tap.to.to_string(),
         time_constant: filed.tap.time_constant,
-        reader: net.iter().find(|w| w.name == filed.tap.from.to_string()).expect("checked").reader.clone(),
+        reader: net
+            .iter()
+            .find(|w| w.name == filed.tap.from.to_string())
+            .expect("checked")
+            .reader
+            .clone(),
         gauge: filed.gauge.clone(),
     });
     let watcher = Watcher {
         shared: shared.clone(),
         began,
-        mode: if refusals.is_empty() { "real time" } else { "best effort" },
+        mode: if refusals.is_empty() {
+            "real time"
+        } else {
+            "best effort"
+        },
         notes: refusals.iter().map(Refusal::to_string).collect(),
         taps: watched_taps.collect(),
         wires: net,
@@ -183,7 +239,14 @@ pub fn start(name: &str, machine: Machine, owned: OwnedPage, domain: Domain) -> 
         causes: Causes::NONE,
     };
     helpers.push(watcher.watch(leave.clone())?);
-    Ok(Running { shared, refusals, beating, helpers, stop, leave })
+    Ok(Running {
+        shared,
+        refusals,
+        beating,
+        helpers,
+        stop,
+        leave,
+    })
 }
 
 fn keep(
@@ -302,13 +365,21 @@ impl Watcher {
         for record in &mut self.records {
             let new = record.drain();
             if new > 0 {
-                let text = format!("{} ran over its period {new} times (of {} beats)", record.name, record.gauge.counts().beats);
+                let text = format!(
+                    "{} ran over its period {new} times (of {} beats)",
+                    record.name,
+                    record.gauge.counts().beats
+                );
                 self.shared.events.note("overrun", Some(&record.name), text);
             }
         }
         self.note_halts();
         let status = self.status(now);
-        *self.shared.status.lock().expect("nobody panics holding the status") = Arc::new(status);
+        *self
+            .shared
+            .status
+            .lock()
+            .expect("nobody panics holding the status") = Arc::new(status);
     }
 
     /// Notes when the body halts and goes on; a reflex is everyday life and not noted.
@@ -327,14 +398,24 @@ impl Watcher {
 
     fn status(&mut self, now: Time) -> Value {
         let attached = self.shared.plugs.attached();
-        let mut wires: Vec<Value> = self.wires.iter().map(|w| status::wire(w, &mut self.rates, now)).collect();
+        let mut wires: Vec<Value> = self
+            .wires
+            .iter()
+            .map(|w| status::wire(w, &mut self.rates, now))
+            .collect();
         let mut taps: Vec<Value> = self.taps.iter().map(|t| status::tap(t, now)).collect();
         let mut layers = status::layers(&self.records);
         for a in &attached {
             layers.push(status::attached(a));
             for (index, output) in a.plug.outputs.iter().enumerate() {
-                let Some(reader) = a.page.reader(index, output.kind) else { continue };
-                let watched = Watched { name: output.name.clone(), unit: output.unit.clone(), reader };
+                let Some(reader) = a.page.reader(index, output.kind) else {
+                    continue;
+                };
+                let watched = Watched {
+                    name: output.name.clone(),
+                    unit: output.unit.clone(),
+                    reader,
+                };
                 wires.push(status::wire(&watched, &mut self.rates, now));
             }
             for t in &a.taps {

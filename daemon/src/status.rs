@@ -39,9 +39,24 @@ pub struct Record {
 
 impl Record {
     /// An empty record of the thread whose samples these are.
-    pub fn new(name: &str, level: Option<u8>, period: Span, gauge: Arc<BeatGauge>, samples: Consumer<Sample>) -> Self {
+    pub fn new(
+        name: &str,
+        level: Option<u8>,
+        period: Span,
+        gauge: Arc<BeatGauge>,
+        samples: Consumer<Sample>,
+    ) -> Self {
         let histogram = || Histogram::new_with_bounds(1, LATENCY_MAX_NS, 3).expect("bounds are sound");
-        Record { name: name.into(), level, period, gauge, samples, latency: histogram(), step: histogram(), overruns: 0 }
+        Record {
+            name: name.into(),
+            level,
+            period,
+            gauge,
+            samples,
+            latency: histogram(),
+            step: histogram(),
+            overruns: 0,
+        }
     }
 
     /// Takes in what was measured since the last look; says how many overruns are new.
@@ -155,7 +170,10 @@ pub struct WatchedTap {
 
 /// Shows a tap: whether it holds, and for how long still.
 pub fn tap(t: &WatchedTap, now: Time) -> Value {
-    let window = t.reader.read().map(|r| Window { stamp: r.stamp.min(now), time_constant: t.time_constant });
+    let window = t.reader.read().map(|r| Window {
+        stamp: r.stamp.min(now),
+        time_constant: t.time_constant,
+    });
     let remaining = window.map_or(Span::ZERO, |w| w.remaining(now));
     let counts = t.gauge.counts();
     json!({

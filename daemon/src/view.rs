@@ -60,7 +60,10 @@ pub fn graph(creature: &Creature, attached: &[Attached]) -> Value {
             })
             .collect();
         layers.push(json!({"name": layer.name, "level": layer.level, "process": null, "modules": modules}));
-        layer.wires.iter().for_each(|w| wire(w.from.to_string(), w.to.to_string()));
+        layer
+            .wires
+            .iter()
+            .for_each(|w| wire(w.from.to_string(), w.to.to_string()));
         for t in &layer.taps {
             taps.push(json!({
                 "kind": t.how, "from": t.from.to_string(), "to": t.to.to_string(),
@@ -71,7 +74,10 @@ pub fn graph(creature: &Creature, attached: &[Attached]) -> Value {
     for a in attached {
         let process = format!("pid {}", a.plug.pid);
         layers.push(json!({"name": a.plug.layer, "level": a.plug.level, "process": process, "modules": a.plug.modules}));
-        a.plug.wires.iter().for_each(|(from, to)| wire(from.clone(), to.clone()));
+        a.plug
+            .wires
+            .iter()
+            .for_each(|(from, to)| wire(from.clone(), to.clone()));
         for t in &a.plug.taps {
             taps.push(json!({
                 "kind": t.how, "from": t.from, "to": t.to, "time_constant_ms": t.time_constant.as_millis_f64(),
@@ -83,6 +89,9 @@ pub fn graph(creature: &Creature, attached: &[Attached]) -> Value {
         json!({"name": BODY, "kind": b.declaration.name, "inputs": ports(b.declaration.inputs),
                "outputs": ports(b.declaration.outputs)})
     });
-    let wires: Vec<Value> = wires.into_iter().map(|(from, to)| json!({"from": from, "to": to})).collect();
+    let wires: Vec<Value> = wires
+        .into_iter()
+        .map(|(from, to)| json!({"from": from, "to": to}))
+        .collect();
     json!({"layers": layers, "body": body, "wires": wires, "taps": taps})
 }

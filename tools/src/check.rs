@@ -20,14 +20,20 @@ pub(crate) fn check(files: &[PathBuf], as_json: bool) -> ExitCode {
                 wrong = true;
                 let help = "expected the path of a creature file (TOML)";
                 eprintln!("{name}: cannot be read: {e}; {help}");
-                found.push(json!({"file": name, "line": 0, "column": 0, "message": e.to_string(), "help": help}));
+                found.push(
+                    json!({"file": name, "line": 0, "column": 0, "message": e.to_string(), "help": help}),
+                );
                 continue;
             }
         };
         match checked {
             Ok(creature) if !as_json => {
                 let modules: usize = creature.layers.iter().map(|l| l.modules.len()).sum();
-                println!("{name}: {} is sound ({} layers, {modules} modules)", creature.name, creature.layers.len());
+                println!(
+                    "{name}: {} is sound ({} layers, {modules} modules)",
+                    creature.name,
+                    creature.layers.len()
+                );
             }
             Ok(_) => {}
             Err(rejected) => {
@@ -42,7 +48,11 @@ pub(crate) fn check(files: &[PathBuf], as_json: bool) -> ExitCode {
     if as_json {
         println!("{}", json!({ "errors": found }));
     }
-    if wrong { ExitCode::from(2) } else { ExitCode::SUCCESS }
+    if wrong {
+        ExitCode::from(2)
+    } else {
+        ExitCode::SUCCESS
+    }
 }
 
 pub(crate) fn modules(name: Option<&str>, as_json: bool) -> ExitCode {
@@ -52,7 +62,10 @@ pub(crate) fn modules(name: Option<&str>, as_json: bool) -> ExitCode {
         known.retain(|d| d.name == name);
         if known.is_empty() {
             let all = kinds().modules();
-            eprintln!("unknown kind of module {name:?}; {}", one_of("kind", name, all.iter().map(|d| d.name)));
+            eprintln!(
+                "unknown kind of module {name:?}; {}",
+                one_of("kind", name, all.iter().map(|d| d.name))
+            );
             return ExitCode::from(2);
         }
     }
@@ -72,8 +85,11 @@ fn describe(d: &Declaration) -> serde_json::Value {
         let port = |p: &Port| json!({"name": p.name, "type": p.kind, "unit": p.unit, "about": p.about});
         ports.iter().map(port).collect::<Vec<_>>()
     };
-    let parameters: Vec<_> =
-        d.parameters.iter().map(|p| json!({"name": p.name, "takes": takes(&p.takes), "unit": p.unit, "about": p.about})).collect();
+    let parameters: Vec<_> = d
+        .parameters
+        .iter()
+        .map(|p| json!({"name": p.name, "takes": takes(&p.takes), "unit": p.unit, "about": p.about}))
+        .collect();
     json!({
         "name": d.name, "about": d.about, "diagram": d.diagram,
         "inputs": ports(d.inputs), "outputs": ports(d.outputs), "parameters": parameters,
@@ -81,16 +97,30 @@ fn describe(d: &Declaration) -> serde_json::Value {
 }
 
 fn explain(d: &Declaration) {
-    println!("{}: {}\n\n  {}\n", d.name, d.about, d.diagram.replace('\n', "\n  "));
+    println!(
+        "{}: {}\n\n  {}\n",
+        d.name,
+        d.about,
+        d.diagram.replace('\n', "\n  ")
+    );
     let ports = |what: &str, ports: &[Port]| {
         for p in ports {
-            println!("  {what:<9} {:<12} {:<8} {:<6} {}", p.name, p.kind, p.unit, p.about);
+            println!(
+                "  {what:<9} {:<12} {:<8} {:<6} {}",
+                p.name, p.kind, p.unit, p.about
+            );
         }
     };
     ports("input", d.inputs);
     ports("output", d.outputs);
     for p in d.parameters {
-        println!("  {:<9} {:<12} {:<15} {}", "parameter", p.name, format!("{} {}", takes(&p.takes), p.unit), p.about);
+        println!(
+            "  {:<9} {:<12} {:<15} {}",
+            "parameter",
+            p.name,
+            format!("{} {}", takes(&p.takes), p.unit),
+            p.about
+        );
     }
 }
 

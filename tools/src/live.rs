@@ -10,7 +10,10 @@ pub(crate) fn call(creature: &str) -> Result<Connection, String> {
 }
 
 fn ask(creature: &str, request: &Request) -> Result<Reply, String> {
-    match call(creature)?.ask(request).map_err(|e| format!("the daemon does not answer: {e}"))? {
+    match call(creature)?
+        .ask(request)
+        .map_err(|e| format!("the daemon does not answer: {e}"))?
+    {
         Reply::Refused { reasons } => Err(reasons.join("; ")),
         reply => Ok(reply),
     }
@@ -19,7 +22,9 @@ fn ask(creature: &str, request: &Request) -> Result<Reply, String> {
 fn ask_status(creature: &str) -> Result<Value, String> {
     match ask(creature, &Request::Status)? {
         Reply::Status(status) => Ok(status),
-        other => Err(format!("the daemon answered {other:?} to a question for its status")),
+        other => Err(format!(
+            "the daemon answered {other:?} to a question for its status"
+        )),
     }
 }
 
@@ -38,7 +43,12 @@ pub(crate) fn status(creature: &str, as_json: bool) -> Done {
         return Ok(());
     }
     let up = status["time_s"].as_f64().unwrap_or(0.0);
-    println!("{} (pid {}), up {up:.0} s, {}", text(&status["creature"]), status["pid"], text(&status["mode"]));
+    println!(
+        "{} (pid {}), up {up:.0} s, {}",
+        text(&status["creature"]),
+        status["pid"],
+        text(&status["mode"])
+    );
     for note in list(&status, "notes") {
         println!("  {}", text(note));
     }
@@ -47,7 +57,11 @@ pub(crate) fn status(creature: &str, as_json: bool) -> Done {
     match causes.as_slice() {
         [] => println!("halt: no"),
         some => {
-            let latched = if halt["latched"] == true { " (latched: `subsumectl reset` ends it)" } else { "" };
+            let latched = if halt["latched"] == true {
+                " (latched: `subsumectl reset` ends it)"
+            } else {
+                ""
+            };
             println!("halt: {}{latched}", some.join(", "));
         }
     }
@@ -61,16 +75,27 @@ pub(crate) fn status(creature: &str, as_json: bool) -> Done {
         let period = format!("{} ms", layer["period_ms"]);
         let name = text(&layer["name"]);
         if layer["attached"] == true {
-            println!("{name:<12} {level:>5} {period:>9}   attached, pid {}", layer["pid"]);
+            println!(
+                "{name:<12} {level:>5} {period:>9}   attached, pid {}",
+                layer["pid"]
+            );
             continue;
         }
         let us = |key: &str| layer["latency_us"][key].as_f64().unwrap_or(0.0);
         println!(
             "{name:<12} {level:>5} {period:>9} {:>10} {:>8} {:>8} {:>9.1} {:>9.1} {:>9.1}",
-            layer["beats"], layer["overruns"], layer["skipped"], us("p50"), us("p99"), us("max")
+            layer["beats"],
+            layer["overruns"],
+            layer["skipped"],
+            us("p50"),
+            us("p99"),
+            us("max")
         );
     }
-    let holding: Vec<String> = list(&status, "taps").filter(|t| t["holds"] == true).map(show_tap).collect();
+    let holding: Vec<String> = list(&status, "taps")
+        .filter(|t| t["holds"] == true)
+        .map(show_tap)
+        .collect();
     if !holding.is_empty() {
         println!("\ntaps that hold:\n{}", holding.join("\n"));
     }
@@ -80,8 +105,15 @@ pub(crate) fn status(creature: &str, as_json: bool) -> Done {
 fn show_tap(tap: &Value) -> String {
     let remaining = tap["remaining_ms"].as_f64().unwrap_or(0.0);
     let (from, to, kind) = (text(&tap["from"]), text(&tap["to"]), text(&tap["kind"]));
-    let what = if kind == "suppress" { "suppresses" } else { "inhibits" };
-    format!("  {from} {what} {to}, {remaining:.0} ms left; delivered {}, rejected {}", tap["delivered"], tap["rejected"])
+    let what = if kind == "suppress" {
+        "suppresses"
+    } else {
+        "inhibits"
+    };
+    format!(
+        "  {from} {what} {to}, {remaining:.0} ms left; delivered {}, rejected {}",
+        tap["delivered"], tap["rejected"]
+    )
 }
 
 pub(crate) fn wires(creature: &str, as_json: bool) -> Done {
@@ -90,9 +122,14 @@ pub(crate) fn wires(creature: &str, as_json: bool) -> Done {
         println!("{}", json!({ "wires": status["wires"] }));
         return Ok(());
     }
-    println!("{:<24} {:<8} {:<6} {:>10} {:>9} {:>10}  value", "wire", "type", "unit", "messages", "Hz", "age ms");
+    println!(
+        "{:<24} {:<8} {:<6} {:>10} {:>9} {:>10}  value",
+        "wire", "type", "unit", "messages", "Hz", "age ms"
+    );
     for wire in list(&status, "wires") {
-        let age = wire["age_ms"].as_f64().map_or("never".into(), |a| format!("{a:.0}"));
+        let age = wire["age_ms"]
+            .as_f64()
+            .map_or("never".into(), |a| format!("{a:.0}"));
         println!(
             "{:<24} {:<8} {:<6} {:>10} {:>9.1} {age:>10}  {}",
             text(&wire["wire"]),

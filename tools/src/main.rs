@@ -12,13 +12,17 @@ use ipc::control::Request;
 
 /// Looks at a running creature, stops it, checks creature files.
 #[derive(Parser, Debug)]
-#[command(name = "subsumectl", version, after_help = "Examples:\n  \
+#[command(
+    name = "subsumectl",
+    version,
+    after_help = "Examples:\n  \
     subsumectl status                     what the creature does\n  \
     subsumectl watch turn.heading         messages of a wire as they come\n  \
     subsumectl halt; subsumectl reset     emergency stop, and its end\n  \
     subsumectl --creature jerry status    another instance\n  \
     subsumectl check mine.toml            every error of a creature file\n\n\
-    Status: 0 done; 1 not done (no daemon, refused); 2 bad input.")]
+    Status: 0 done; 1 not done (no daemon, refused); 2 bad input."
+)]
 struct Options {
     /// The running creature to speak to
     #[arg(long, global = true, default_value = "allen", value_name = "NAME")]
@@ -74,7 +78,12 @@ fn main() -> ExitCode {
         Command::Wires => live::wires(creature, json),
         Command::Watch { wire, count, seconds } => watch::watch(creature, &wire, json, count, seconds),
         Command::Events => live::events(creature, json),
-        Command::Halt => live::order(creature, json, Request::Halt, "halted; `subsumectl reset` ends it"),
+        Command::Halt => live::order(
+            creature,
+            json,
+            Request::Halt,
+            "halted; `subsumectl reset` ends it",
+        ),
         Command::Reset => live::order(creature, json, Request::Reset, "reset"),
         Command::Check { files } => return check::check(&files, json),
         Command::Modules { name } => return check::modules(name.as_deref(), json),

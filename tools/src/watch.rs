@@ -20,17 +20,26 @@ pub(crate) fn watch(
     count: Option<u64>,
     seconds: Option<f64>,
 ) -> Result<(), String> {
-    let reply = call(creature)?.ask(&Request::Directory).map_err(|e| format!("the daemon does not answer: {e}"))?;
-    let Reply::Directory(directory) = reply else { return Err("the daemon answered something else".into()) };
+    let reply = call(creature)?
+        .ask(&Request::Directory)
+        .map_err(|e| format!("the daemon does not answer: {e}"))?;
+    let Reply::Directory(directory) = reply else {
+        return Err("the daemon answered something else".into());
+    };
     let Some(listed) = directory.outputs.iter().find(|o| o.name == wire) else {
         let help = one_of("wire", wire, directory.outputs.iter().map(|o| o.name.as_str()));
         return Err(format!("there is no wire {wire:?}; {help}"));
     };
     let domain = Domain::join("subsumectl").map_err(|e| e.to_string())?;
     let page = domain.map(&listed.owner).map_err(|e| e.to_string())?;
-    let reader = page.reader(listed.index, listed.kind).ok_or("the wire is not in its owner's page")?;
+    let reader = page
+        .reader(listed.index, listed.kind)
+        .ok_or("the wire is not in its owner's page")?;
     let began = Instant::now();
-    let limit = seconds.map(Duration::try_from_secs_f64).transpose().map_err(|e| format!("--seconds: {e}"))?;
+    let limit = seconds
+        .map(Duration::try_from_secs_f64)
+        .transpose()
+        .map_err(|e| format!("--seconds: {e}"))?;
     let (mut seen, mut shown, mut missed) = (0, 0, 0);
     while limit.is_none_or(|limit| began.elapsed() < limit) && count.is_none_or(|count| shown < count) {
         if let Some(reading) = reader.newer_than(seen) {
@@ -42,9 +51,17 @@ pub(crate) fn watch(
             let value = value(listed.kind, &reading.words);
             if as_json {
                 let stamp = reading.stamp.seconds();
-                println!("{}", json!({"wire": wire, "number": reading.number, "stamp_s": stamp, "value": value}));
+                println!(
+                    "{}",
+                    json!({"wire": wire, "number": reading.number, "stamp_s": stamp, "value": value})
+                );
             } else {
-                println!("{:12.6}  #{:<8} {}", reading.stamp.seconds(), reading.number, short(&value));
+                println!(
+                    "{:12.6}  #{:<8} {}",
+                    reading.stamp.seconds(),
+                    reading.number,
+                    short(&value)
+                );
             }
         }
         std::thread::sleep(LOOK);

@@ -40,13 +40,17 @@ pub fn lock_memory() -> Result<(), Refusal> {
     mlockall(MlockAllFlags::CURRENT | MlockAllFlags::FUTURE).map_err(|errno| Refusal {
         call: "mlockall(MCL_CURRENT | MCL_FUTURE)".into(),
         errno: name(errno),
-        grants: "granted by CAP_IPC_LOCK, by LimitMEMLOCK=infinity in the unit, or by `ulimit -l unlimited`".into(),
+        grants: "granted by CAP_IPC_LOCK, by LimitMEMLOCK=infinity in the unit, or by `ulimit -l unlimited`"
+            .into(),
     })
 }
 
 /// Sees to it that a runaway real-time thread ends the process instead of starving the host.
 pub fn limit_runaway() {
-    let limit = Rlimit { current: Some(RUNAWAY_US), maximum: Some(RUNAWAY_US) };
+    let limit = Rlimit {
+        current: Some(RUNAWAY_US),
+        maximum: Some(RUNAWAY_US),
+    };
     // A stricter limit may be in force; then that one does.
     let _ = setrlimit(Resource::Rttime, limit);
 }
@@ -56,7 +60,9 @@ pub fn limit_runaway() {
 /// # Errors
 /// The refusal, with what grants it.
 pub fn schedule_fifo(priority: u8) -> Result<(), Refusal> {
-    let posix = ThreadPriority::from_posix(ScheduleParams { sched_priority: i32::from(priority) });
+    let posix = ThreadPriority::from_posix(ScheduleParams {
+        sched_priority: i32::from(priority),
+    });
     let fifo = ThreadSchedulePolicy::Realtime(RealtimeThreadSchedulePolicy::Fifo);
     set_thread_priority_and_policy(thread_native_id(), posix, fifo).map_err(|e| Refusal {
         call: format!("sched_setscheduler(SCHED_FIFO, {priority})"),
@@ -82,7 +88,9 @@ pub fn bind(cpu: usize) -> Result<(), Refusal> {
     sched_setaffinity(None, &set).map_err(|errno| Refusal {
         call: format!("sched_setaffinity(cpu {cpu})"),
         errno: name(errno),
-        grants: "expected the number of a processor that is online and in this process's set (see `nproc --all`)".into(),
+        grants:
+            "expected the number of a processor that is online and in this process's set (see `nproc --all`)"
+                .into(),
     })
 }
 

@@ -88,17 +88,28 @@ pub fn start(
     let (sample_in, samples) = RingBuffer::new(SAMPLES_MAX);
     let (ready_in, ready) = std::sync::mpsc::channel();
     let name = plan.name.clone();
-    let thread = std::thread::Builder::new().name(name.clone()).stack_size(STACK_BYTES).spawn(move || {
-        let tid = rustix::thread::gettid().as_raw_nonzero().get();
-        let _ = ready_in.send((tid, settle(&plan)));
-        drop(ready_in);
-        touch_stack();
-        alloc::seal();
-        run(&plan, begin, &mut beats, &gauge, &halt, &stop, sample_in);
-        alloc::unseal();
-    })?;
-    let (tid, refusals) = ready.recv().map_err(|_| std::io::Error::other("the thread ended at once"))?;
-    Ok(Beating { name, samples, tid, refusals, thread })
+    let thread = std::thread::Builder::new()
+        .name(name.clone())
+        .stack_size(STACK_BYTES)
+        .spawn(move || {
+            let tid = rustix::thread::gettid().as_raw_nonzero().get();
+            let _ = ready_in.send((tid, settle(&plan)));
+            drop(ready_in);
+            touch_stack();
+            alloc::seal();
+            run(&plan, begin, &mut beats, &gauge, &halt, &stop, sample_in);
+            alloc::unseal();
+        })?;
+    let (tid, refusals) = ready
+        .recv()
+        .map_err(|_| std::io::Error::other("the thread ended at once"))?;
+    Ok(Beating {
+        name,
+        samples,
+        tid,
+        refusals,
+        thread,
+    })
 }
 
 /// Asks the host for what the plan wants.
@@ -136,7 +147,10 @@ fn run(
         beats.beat(woke);
         let ended = clock::monotonic();
         gauge.beat(ended);
-        let sample = Sample { latency: woke.since(due), step: ended.since(woke) };
+        let sample = Sample {
+            latency: woke.since(due),
+            step: ended.since(woke),
+        };
         if samples.push(sample).is_err() {
             gauge.lose_sample();
         }

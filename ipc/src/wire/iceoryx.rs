@@ -147,7 +147,9 @@ impl Domain {
         let prefix = config.global.prefix.to_string();
         for entry in std::fs::read_dir("/dev/shm").into_iter().flatten().flatten() {
             let name = entry.file_name().to_string_lossy().into_owned();
-            let ours = name.strip_prefix(&prefix).and_then(|rest| rest.strip_suffix(COUNTER_SUFFIX));
+            let ours = name
+                .strip_prefix(&prefix)
+                .and_then(|rest| rest.strip_suffix(COUNTER_SUFFIX));
             if ours.is_some_and(|hash| hash.len() == 40 && hash.bytes().all(|b| b.is_ascii_hexdigit())) {
                 let _ = std::fs::remove_file(entry.path());
             }
