@@ -67,7 +67,7 @@ impl Span {
     /// The span of a non-negative, finite number of seconds, rounded to the nanosecond.
     pub fn from_seconds(seconds: f64) -> Option<Span> {
         let nanos = (seconds * 1e9).round();
-        (nanos >= 0.0 && nanos < 9.0e18).then_some(Span(nanos as u64))
+        (0.0..9.0e18).contains(&nanos).then_some(Span(nanos as u64))
     }
     /// Reads `"20ms"`, `"1.5s"`, `"50us"`, `"250ns"` or `"2min"`.
     ///
@@ -97,9 +97,9 @@ impl fmt::Display for Span {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let n = self.0;
         match n {
-            _ if n % 1_000_000_000 == 0 => write!(f, "{}s", n / 1_000_000_000),
-            _ if n % 1_000_000 == 0 => write!(f, "{}ms", n / 1_000_000),
-            _ if n % 1_000 == 0 => write!(f, "{}us", n / 1_000),
+            _ if n.is_multiple_of(1_000_000_000) => write!(f, "{}s", n / 1_000_000_000),
+            _ if n.is_multiple_of(1_000_000) => write!(f, "{}ms", n / 1_000_000),
+            _ if n.is_multiple_of(1_000) => write!(f, "{}us", n / 1_000),
             _ => write!(f, "{n}ns"),
         }
     }

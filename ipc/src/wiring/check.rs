@@ -204,13 +204,8 @@ impl Checker<'_> {
                 }
                 Takes::Numbers { .. } => {
                     let items = doc::array(v, "a list of numbers", f);
-                    Some(
-                        items
-                            .iter()
-                            .filter_map(|n| doc::number(n, f64::MIN, f64::MAX, f))
-                            .collect(),
-                    )
-                    .map(Setting::Numbers)
+                    let numbers = items.iter().filter_map(|n| doc::number(n, f64::MIN, f64::MAX, f));
+                    Some(Setting::Numbers(numbers.collect()))
                 }
             });
             settings.push(read.or(parameter.takes.default()).unwrap_or(Setting::Bit(false)));
