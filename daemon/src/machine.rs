@@ -131,16 +131,7 @@ impl Machine {
                     .expect("one writer")
             };
             let sensors = (0..sensors_end).map(sensor).collect();
-            let motor = Motor::new(
-                &creature,
-                kind,
-                motor_end,
-                sensors,
-                &net,
-                &taps,
-                &gauges,
-                halt.clone(),
-            );
+            let motor = Motor::new(&creature, motor_end, sensors, &net, &taps, &gauges, halt.clone());
             let world = (kind.build)(&spec.settings, creature.seed, start);
             Embodied {
                 motor,

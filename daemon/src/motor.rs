@@ -16,7 +16,7 @@ use ipc::message::{WORDS_MAX, Words};
 use ipc::wire::{Reader, Register, Writer};
 use ipc::wiring::creature::{BODY, Creature, How, PortName};
 
-use crate::body::{BodyKind, MotorEnd};
+use crate::body::{self, BodyKind, MotorEnd};
 use crate::executor::gauge::BeatGauge;
 use crate::gate::{Causes, Gate, Passage, Seen};
 
@@ -113,7 +113,6 @@ impl Motor {
     /// When the creature was not checked against this kind of body.
     pub fn new(
         creature: &Creature,
-        kind: &'static BodyKind,
         link: MotorEnd,
         sensors: Vec<Writer>,
         wires: &dyn Wires,
@@ -121,6 +120,11 @@ impl Motor {
         gauges: &[Arc<BeatGauge>],
         channel: Arc<HaltChannel>,
     ) -> Motor {
+        let body = creature
+            .body
+            .as_ref()
+            .expect("a creature with a motor unit has a body");
+        let kind = body::find(body.declaration.name).expect("a checked body is of a known kind");
         let inputs = kind.declaration.inputs;
         let mut registers = Vec::new();
         for port in inputs {
@@ -150,10 +154,6 @@ impl Motor {
             .zip(gauges)
             .filter(|(layer, _)| layer.vital);
         let late = |period: Span| Span((period.0 * (VITAL_BEATS_MAX + 1)).max(VITAL_LATE_MIN.0));
-        let body = creature
-            .body
-            .as_ref()
-            .expect("a creature with a motor unit has a body");
         Motor {
             kind,
             registers,

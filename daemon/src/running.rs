@@ -328,7 +328,7 @@ fn keeper(owned: OwnedPage, shared: Arc<Shared>, leave: Arc<AtomicBool>) -> std:
             owned.serve();
             shared.plugs.sweep();
             turns = turns.wrapping_add(1);
-            if turns % 400 == 0 {
+            if turns.is_multiple_of(400) {
                 shared.domain.clean();
             }
             std::thread::sleep(Duration::from_millis(5));

@@ -29,8 +29,11 @@ pub struct BodyKind {
     /// How old a command may be before the world stops by itself.
     pub stale: Span,
     /// Builds the world.
-    pub build: fn(&[Setting], u64, Option<Place>) -> Box<dyn World>,
+    pub build: Build,
 }
+
+/// Builds a world from its checked parameters, a seed, and where the body is to start.
+pub type Build = fn(&[Setting], u64, Option<Place>) -> Box<dyn World>;
 
 /// Where a scenario wants the body to start: x and y in metres, heading in radians.
 pub type Place = (f64, f64, f64);
