@@ -120,6 +120,10 @@ pub struct Rates {
 impl Rates {
     fn of(&mut self, name: &str, number: u64, now: Time) -> f64 {
         let (before, at, rate) = self.seen.entry(name.into()).or_insert((number, now, 0.0));
+        if number < *before {
+            // A layer of that name came back: its wires count from the beginning.
+            (*before, *at) = (number, now);
+        }
         let passed = now.since(*at).seconds();
         if passed >= 1.0 {
             *rate = (number - *before) as f64 / passed;
