@@ -1,22 +1,24 @@
-//! `allen.collide`: watches whether the way dead ahead is clear, and sends halt messages while it is not.
+//! `allen.collide`: watches whether the way ahead is clear, and sends halt messages while it is not.
 //!
 //! ```text
-//!  Blind ──map──► Watching: every beat, if something could be met before the next map: halt
+//!  Blind ──map──► Watching: every beat, if something could be met before the robot stands: halt
 //!    ▲                │ no map for `blind`
 //!    └────────────────┘   (blind: halt as well)
 //! ```
-//! A map is a second old before the next one comes. What it showed is therefore moved towards the robot by
-//! the way both can have come since: the robot at its full speed, whatever else there is at a walking
-//! pace. The map is turned as the compass turns, so that *ahead* is ahead of the robot as it stands now.
+//! A map is a second old before the next one comes, and a person crosses the reach of an arm in that time.
+//! What the map showed is therefore kept as *marks*, points of the floor; the robot is moved among them as
+//! odometry and compass say, plus the way it needs to stop; and a mark matters as soon as whoever stood there
+//! could by then, at a walking pace, have come to the front half of the robot. What touches the back was not
+//! driven into.
 use afsm::{Beat, In, Module, ModuleKind, Out, Settings};
 use ipc::clock::{Span, Time};
-use ipc::message::{Kind, Map, Pulse};
+use ipc::message::{Kind, Map, Pose, Pulse, SONARS};
 use ipc::wiring::{Declaration, Parameter, Port, Takes};
 
-use crate::geometry::{HALF_CONE, bearing, wrap};
+use crate::geometry::{HALF_CONE, Spot, bearing, wrap};
 
 const MAP: In<Map> = In::at(0);
-const COMPASS: In<f64> = In::at(1);
+const POSE: In<Pose> = In::at(1);
 const HALT: Out<Pulse> = Out::at(0);
 
 /// The kind `allen.collide`.
@@ -27,26 +29,32 @@ pub static KIND: ModuleKind = ModuleKind {
 
 static DECLARATION: Declaration = Declaration {
     name: "allen.collide",
-    about: "sends halt messages while something is, or could by now be, dead ahead",
-    diagram: "Blind --map--> Watching --(range - way both came since the map < margin)--/halt--> Watching",
+    about: "sends halt messages while something is ahead, or could be before the robot has stopped",
+    diagram: "Blind --map--> Watching --(something could be met before the robot stands)/halt--> Watching",
     inputs: &[
         Port::new("map", Kind::Map, "a sonar map")
             .unit("m")
             .between(0.0, 100.0),
-        Port::new("compass", Kind::Number, "which way the robot faces").unit("rad"),
+        Port::new(
+            "pose",
+            Kind::Pose,
+            "where the wheels think the robot is, which way it faces",
+        ),
     ],
     outputs: &[Port::new("halt", Kind::Pulse, "do not drive forward")],
     parameters: &[
         number("radius", 0.2, "m", "radius of the robot"),
         number("speed", 0.3, "m/s", "full speed of the robot"),
         number("pace", 0.75, "m/s", "pace at which people walk into the robot"),
-        number(
-            "margin",
-            0.2,
-            "m",
-            "room to keep to what stands, braking way included",
-        ),
-        number("side", 0.06, "m", "room to keep at the side when passing"),
+        number("margin", 0.05, "m", "room to keep, for what the pose is off by"),
+        Parameter {
+            name: "stop",
+            takes: Takes::Span {
+                default: Some(Span::millis(350)),
+            },
+            unit: "",
+            about: "from a halt message to a robot that stands",
+        },
         Parameter {
             name: "blind",
             takes: Takes::Span {
@@ -71,27 +79,34 @@ const fn number(name: &'static str, default: f64, unit: &'static str, about: &'s
     }
 }
 
-/// Room kept to what may be walking, metres.
-const WALKING_MARGIN_M: f64 = 0.1;
-/// An echo nearer than this does not vanish within a second unless it was lost: the older one stands.
-const NEAR_ECHO_M: f64 = 2.0;
+/// Marks farther than this are out of reach: people and robot meet at 1.05 m/s, a map serves 1.6 s at most.
+const FAR_M: f64 = 2.2;
 /// Farther than anything within a second's reach: no echo.
 const NO_ECHO_M: f64 = 5.0;
+/// Radius of a person: half a shoulder breadth.
+const PERSON_M: f64 = 0.22;
+/// Backward per sideways from which on a mark lies behind: 30 degrees back from abeam.
+const BEHIND: f64 = 0.6;
+/// Points that stand for the arc an echo can have come from: its ends and its middle.
+const ARC: [f64; 3] = [-HALF_CONE, 0.0, HALF_CONE];
 
-/// A map with the heading and time at which it was taken.
+/// What one sonar heard: perhaps a person, somewhere on an arc.
 #[derive(Clone, Copy)]
-struct Taken {
-    map: Map,
-    heading: f64,
+struct Mark {
+    /// Points of the floor that the person's middle may have been at.
+    arc: [Spot; 3],
+    /// When it was heard.
     at: Time,
 }
+
+type Marks = [Option<Mark>; SONARS];
 
 // A module is in one state at a time; boxing the large one would save nothing and allocate in a step.
 #[allow(clippy::large_enum_variant)]
 #[derive(Clone, Copy)]
 enum State {
     Blind,
-    Watching { newest: Taken, before: Option<Taken> },
+    Watching { marks: Marks, at: Time },
 }
 
 struct Collide {
@@ -100,7 +115,7 @@ struct Collide {
     speed: f64,
     pace: f64,
     margin: f64,
-    side: f64,
+    stop: Span,
     blind: Span,
 }
 
@@ -112,69 +127,85 @@ impl Collide {
             speed: settings.number("speed"),
             pace: settings.number("pace"),
             margin: settings.number("margin"),
-            side: settings.number("side"),
+            stop: settings.span("stop"),
             blind: settings.span("blind"),
         }
     }
 
-    /// Whether something seen at `range` and `off` the way ahead can be in it after `age` seconds.
-    fn in_the_way(&self, range: f64, off: f64, age: f64) -> bool {
-        // The echo came from anywhere in the cone; the nearest to dead ahead counts.
-        let off = (off.abs() - HALF_CONE).max(0.0);
-        let towards = libm::cos(off);
-        if off >= core::f64::consts::FRAC_PI_3 + HALF_CONE {
-            return false;
-        }
-        let aside = (range + self.radius) * libm::sin(off);
-        let stands = aside < self.radius + self.side && range - age * self.speed * towards < self.margin;
-        let walks = range - age * (self.speed * towards + self.pace) < WALKING_MARGIN_M;
-        stands || walks
+    /// The marks of a map heard `at` a pose, given those of the map before.
+    fn marks(&self, map: &Map, pose: Pose, at: Time, before: &Marks) -> Marks {
+        std::array::from_fn(|index| {
+            let range = map.ranges[index];
+            if range < FAR_M {
+                let middle = self.radius + range + PERSON_M;
+                let arc = ARC.map(|off| Spot::from(pose, middle, bearing(index) + off));
+                return Some(Mark { arc, at });
+            }
+            // An echo that was near a second ago and now is none was lost: the older one stands for it.
+            let lost = |mark: &&Mark| range > NO_ECHO_M && at.since(mark.at) < self.blind;
+            let same_way = |mark: &&Mark| {
+                let seen = mark.arc[1].seen_from(pose);
+                let off = wrap(libm::atan2(seen.y, seen.x) - bearing(index));
+                off.abs() <= HALF_CONE
+            };
+            before.iter().flatten().filter(lost).find(same_way).copied()
+        })
     }
 
-    fn blocked(&self, taken: &Taken, heading: f64, now: Time, counts: impl Fn(usize, f64) -> bool) -> bool {
-        let age = now.since(taken.at).seconds();
-        let turned = heading - taken.heading;
-        taken.map.ranges.iter().enumerate().any(|(index, range)| {
-            counts(index, *range) && self.in_the_way(*range, wrap(bearing(index) - turned), age)
+    /// Whether the way ahead is barred at `now` for a robot at `pose`.
+    fn barred(&self, marks: &Marks, pose: Pose, now: Time) -> bool {
+        // Braking takes the robot half as far as it would have gone.
+        let way = self.speed * self.stop.seconds() / 2.0;
+        let meet = self.radius + PERSON_M + self.margin;
+        marks.iter().flatten().any(|mark| {
+            let walked = self.pace * (now.since(mark.at) + self.stop).seconds();
+            let reaches = |spot: &Spot| {
+                let seen = spot.seen_from(pose);
+                to_front(seen.x - way, seen.y, meet) < walked
+            };
+            mark.arc.iter().any(reaches)
         })
+    }
+}
+
+/// How far it is from (x, y) to the front half of a disc of `radius` about the origin; endless from behind,
+/// where the disc itself is in the way.
+fn to_front(x: f64, y: f64, radius: f64) -> f64 {
+    if x >= 0.0 {
+        (libm::hypot(x, y) - radius).max(0.0)
+    } else if x < -y.abs() * BEHIND {
+        f64::INFINITY
+    } else {
+        libm::hypot(x, (y.abs() - radius).max(0.0))
     }
 }
 
 impl Module for Collide {
     fn step(&mut self, beat: &mut Beat<'_>) {
         let now = beat.now();
-        let Some(heading) = beat.latest(COMPASS) else {
+        let Some(pose) = beat.latest(POSE) else {
             beat.emit(HALT, Pulse);
             return;
         };
         if let Some(map) = beat.arrived(MAP) {
-            let before = match self.state {
-                State::Watching { newest, .. } => Some(newest),
-                State::Blind => None,
-            };
             let at = beat.stamp(MAP).unwrap_or(now);
-            self.state = State::Watching {
-                newest: Taken { map, heading, at },
-                before,
+            let before = match self.state {
+                State::Watching { marks, .. } => marks,
+                State::Blind => [None; SONARS],
             };
+            let marks = self.marks(&map, pose, at, &before);
+            self.state = State::Watching { marks, at };
         }
-        let halt = match &self.state {
+        if let State::Watching { at, .. } = self.state
+            && now.since(at) > self.blind
+        {
+            self.state = State::Blind;
+        }
+        let barred = match &self.state {
             State::Blind => true,
-            State::Watching { newest, .. } if now.since(newest.at) > self.blind => {
-                self.state = State::Blind;
-                true
-            }
-            State::Watching { newest, before } => {
-                let lost = |older: &Taken| {
-                    let map = newest.map;
-                    self.blocked(older, heading, now, |i, r| {
-                        r < NEAR_ECHO_M && map.ranges[i] > NO_ECHO_M
-                    })
-                };
-                self.blocked(newest, heading, now, |_, _| true) || before.as_ref().is_some_and(lost)
-            }
+            State::Watching { marks, .. } => self.barred(marks, pose, now),
         };
-        if halt {
+        if barred {
             beat.emit(HALT, Pulse);
         }
     }
