@@ -84,9 +84,9 @@ pub(crate) fn status(creature: &str, as_json: bool) -> Done {
         let us = |key: &str| layer["latency_us"][key].as_f64().unwrap_or(0.0);
         println!(
             "{name:<12} {level:>5} {period:>9} {:>10} {:>8} {:>8} {:>9.1} {:>9.1} {:>9.1}",
-            layer["beats"],
-            layer["overruns"],
-            layer["skipped"],
+            number(&layer["beats"]),
+            number(&layer["overruns"]),
+            number(&layer["skipped"]),
             us("p50"),
             us("p99"),
             us("max")
@@ -100,6 +100,11 @@ pub(crate) fn status(creature: &str, as_json: bool) -> Done {
         println!("\ntaps that hold:\n{}", holding.join("\n"));
     }
     Ok(())
+}
+
+/// A count as text, so that it can be set to a width.
+fn number(value: &Value) -> String {
+    value.as_u64().map_or("-".into(), |n| n.to_string())
 }
 
 fn show_tap(tap: &Value) -> String {
@@ -135,7 +140,7 @@ pub(crate) fn wires(creature: &str, as_json: bool) -> Done {
             text(&wire["wire"]),
             text(&wire["type"]),
             text(&wire["unit"]),
-            wire["messages"],
+            number(&wire["messages"]),
             wire["rate_hz"].as_f64().unwrap_or(0.0),
             short(&wire["value"]),
         );

@@ -71,6 +71,9 @@ enum Command {
 }
 
 fn main() -> ExitCode {
+    // A reader that leaves early, such as `head`, ends this program without a complaint.
+    let gone = std::sync::Arc::new(std::sync::atomic::AtomicBool::new(true));
+    let _ = signal_hook::flag::register_conditional_default(signal_hook::consts::SIGPIPE, gone);
     let options = Options::parse();
     let (creature, json) = (options.creature.as_str(), options.json);
     let done = match options.command {
