@@ -63,6 +63,10 @@ enum Command {
         #[arg(required = true)]
         files: Vec<PathBuf>,
     },
+    /// Truckin': games, the whole grid, evolution of trucks
+    Truckin(truckin::command::TruckinArgs),
+    /// ADROIT: check, draw, run and change programs of releasing mechanisms
+    Adroit(adroit::command::AdroitArgs),
     /// Lists the kinds of module, or explains one
     Modules {
         /// A kind of module
@@ -89,6 +93,8 @@ fn main() -> ExitCode {
         ),
         Command::Reset => live::order(creature, json, Request::Reset, "reset"),
         Command::Check { files } => return check::check(&files, json),
+        Command::Truckin(args) => return truckin::command::command(args),
+        Command::Adroit(args) => return adroit::command::command(args),
         Command::Modules { name } => return check::modules(name.as_deref(), json),
     };
     match done {
