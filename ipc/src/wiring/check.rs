@@ -257,10 +257,15 @@ impl Checker<'_> {
                 Takes::Word { words, .. } => {
                     doc::word(v, parameter.name, words, f).map(|i| Setting::Text(words[i].into()))
                 }
-                Takes::Numbers { .. } => {
-                    let items = doc::array(v, "a list of numbers", f);
-                    let numbers = items.iter().filter_map(|n| doc::number(n, f64::MIN, f64::MAX, f));
+                Takes::Numbers { low, high, most, .. } => {
+                    let items = doc::list(v, "numbers", most, f);
+                    let numbers = items.iter().filter_map(|n| doc::number(n, low, high, f));
                     Some(Setting::Numbers(numbers.collect()))
+                }
+                Takes::Spans { most, .. } => {
+                    let items = doc::list(v, "times such as [\"20ms\"]", most, f);
+                    let spans = items.iter().filter_map(|s| doc::span(s, false, f));
+                    Some(Setting::Spans(spans.collect()))
                 }
             });
             settings.push(read.or(parameter.takes.default()).unwrap_or(Setting::Bit(false)));

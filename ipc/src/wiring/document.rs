@@ -266,6 +266,21 @@ pub fn array<'t, 's>(
     }
 }
 
+/// The elements of a list of at most `most` of `what`.
+pub fn list<'t, 's>(
+    value: &'t Spanned<DeValue<'s>>,
+    what: &str,
+    most: usize,
+    findings: &mut Findings,
+) -> Vec<&'t Spanned<DeValue<'s>>> {
+    let items = array(value, &format!("a list of {what}"), findings);
+    if items.len() > most {
+        let message = format!("the list has {} elements", items.len());
+        findings.error(value.span(), message, format!("expected at most {most}"));
+    }
+    items
+}
+
 /// A table.
 pub fn table<'t, 's>(
     value: &'t Spanned<DeValue<'s>>,
