@@ -1,4 +1,4 @@
-//! Kinds of module that exist for trying wiring: one that is silent, one that passes on what it hears.
+//! Kinds of module that exist for trying wiring: some that are silent, one that passes on what it hears.
 //!
 //! Must never do anything that a creature could want: behaviour is for layers.
 
@@ -8,7 +8,7 @@ use ipc::wiring::{Declaration, Port};
 
 /// The daemon's kinds and those of this module.
 pub fn kinds() -> Kinds {
-    daemon::machine::kinds().with([&MOUTH, &RELAY])
+    daemon::machine::kinds().with([&MOUTH, &BELL, &RELAY])
 }
 
 /// A module that never says anything of its own: a wire to put messages on.
@@ -19,6 +19,19 @@ pub static MOUTH: ModuleKind = ModuleKind {
         diagram: "silent",
         inputs: &[],
         outputs: &[Port::new("value", Kind::Number, "what the scenario puts")],
+        parameters: &[],
+    },
+    build: |_: &Settings<'_>| Box::new(Mouth),
+};
+
+/// The same for pulses, such as a reset line takes.
+pub static BELL: ModuleKind = ModuleKind {
+    declaration: &Declaration {
+        name: "trial.bell",
+        about: "never rings of its own: a wire for a scenario to put pulses on",
+        diagram: "silent",
+        inputs: &[],
+        outputs: &[Port::new("ring", Kind::Pulse, "when the scenario says so")],
         parameters: &[],
     },
     build: |_: &Settings<'_>| Box::new(Mouth),
