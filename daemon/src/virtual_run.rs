@@ -20,6 +20,7 @@ pub struct VirtualRun {
     now: Time,
     due: Vec<Time>,
     body_due: Time,
+    dead: Vec<bool>,
 }
 
 /// The moment at which virtual time begins: not zero, so that nothing is mistaken for never.
@@ -30,6 +31,7 @@ impl VirtualRun {
     pub fn new(machine: Machine) -> VirtualRun {
         let due = machine.stations.iter().map(|s| BEGIN + s.spec.phase).collect();
         VirtualRun {
+            dead: vec![false; machine.stations.len()],
             machine,
             now: BEGIN,
             due,
@@ -52,6 +54,18 @@ impl VirtualRun {
         self.now = end;
     }
 
+    /// Kills the `station`-th layer: it beats no more, and what its taps said last runs out by itself.
+    pub fn kill(&mut self, station: usize) {
+        self.dead[station] = true;
+    }
+
+    /// Starts a killed layer again as its process would be: every module in its initial state, nothing in
+    /// its registers.
+    pub fn restart(&mut self, station: usize) {
+        self.dead[station] = false;
+        self.machine.stations[station].running.restart();
+    }
+
     fn next(&self) -> Option<Time> {
         let layers = self.due.iter().copied();
         let body = self.machine.body.is_some().then_some(self.body_due);
@@ -66,8 +80,8 @@ impl VirtualRun {
             body,
             ..
         } = &mut self.machine;
-        for (station, due) in stations.iter_mut().zip(&self.due) {
-            if *due == t {
+        for ((station, due), dead) in stations.iter_mut().zip(&self.due).zip(&self.dead) {
+            if *due == t && !dead {
                 station.running.step(t);
             }
         }
@@ -77,9 +91,11 @@ impl VirtualRun {
             body.motor.gather(t);
         }
         // Stations stand in order of level; the highest writes first.
-        for (station, due) in stations.iter_mut().zip(&mut self.due).rev() {
+        for ((station, due), dead) in stations.iter_mut().zip(&mut self.due).zip(&self.dead).rev() {
             if *due == t {
-                commit(station, t);
+                if !dead {
+                    commit(station, t);
+                }
                 *due = *due + station.spec.period;
             }
         }
