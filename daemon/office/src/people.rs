@@ -49,7 +49,7 @@ const GROUP_RADIUS_M: f64 = 0.5;
 /// How long a group talks in one place, ways there included, s.
 const GROUP_S: f64 = 75.0;
 /// How long an attacker stays away, s.
-const AWAY_S: (f64, f64) = (3.0, 15.0);
+const AWAY_S: (f64, f64) = (15.0, 60.0);
 /// Gap to the robot at which an attacker stops, m; below zero means walking up until they touch.
 const STAND_OFF_M: (f64, f64) = (-0.1, 0.3);
 /// An attacker lets the robot get this much farther than the stand-off before following, m.

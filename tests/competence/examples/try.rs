@@ -1,6 +1,6 @@
 //! One row in the offices that layers are built in: what one looks at while building.
 //!
-//! `cargo run --release -p competence --example try -- 012 [seeds] [hours] [kept|generated]`
+//! `cargo run --release -p competence --example try -- 012 [seeds] [hours] [old=>new]…`, which changes the creature's text
 #![allow(missing_docs)]
 
 use competence::row;
@@ -25,13 +25,18 @@ fn main() {
                     if seed > seeds {
                         return;
                     }
-                    let text = row.text(seed, &format!("layout = \"kept\"\nnumber = {seed}"));
+                    let mut text = row.text(seed, &format!("layout = \"kept\"\nnumber = {seed}"));
+                    for change in args.iter().skip(3) {
+                        let (from, to) = change.split_once("=>").expect("old=>new");
+                        assert!(text.contains(from), "{from:?} stands in the text");
+                        text = text.replace(from, to);
+                    }
                     let figures = trial::run_text(row, &text, seed, hours, &|| false).expect("nobody stops it");
                     for f in &figures {
                         eprintln!(
-                            "seed {:3} caused {} all {} halts {} dist {:.0} area {:.1} rooms {} chosen {} reached {} in {:.0} stuck {:.0}",
+                            "seed {:3} caused {} all {} halts {} dist {:.0} area {:.1} rooms {} chosen {} reached {} in {:.0} stuck {:.0} {:?}",
                             f.seed, f.caused, f.contacts, f.halts, f.distance_m, f.area_m2, f.rooms, f.chosen, f.reached,
-                            f.reaching_s / f.reached, f.stuck_s
+                            f.reaching_s / f.reached, f.stuck_s, f.caused_with
                         );
                     }
                     all.lock().expect("whole").extend(figures);

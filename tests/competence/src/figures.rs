@@ -13,6 +13,8 @@ pub struct Figures {
     pub hours: f64,
     /// Contacts that the robot caused: its own speed towards the thing was above 1 cm/s.
     pub caused: f64,
+    /// What they were with, when and how fast: those of them that the world remembers.
+    pub caused_with: Vec<String>,
     /// Contacts in all.
     pub contacts: f64,
     /// Halts of a robot that moved.

@@ -257,6 +257,10 @@ impl Robot {
         let office = office_of(&mut self.run.machine);
         let contacts = office.contacts_of(self.index);
         figures.caused = contacts.caused as f64;
+        let caused = contacts.recent.iter().filter(|c| c.caused);
+        figures.caused_with = caused
+            .map(|c| format!("{} at {:.1} s, {:.3} m/s", c.other, c.time_s, c.approach_m_s))
+            .collect();
         figures.contacts = contacts.all as f64;
         figures.distance_m = office.distance_travelled_of_m(self.index);
         figures
