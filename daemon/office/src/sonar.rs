@@ -53,6 +53,11 @@ pub struct SonarModel {
     pub cross_talk: f64,
     /// Full width of the cone, degrees: the main lobe of the Polaroid transducer, from the data sheet.
     pub cone_deg: f64,
+    /// What is this near is heard by the side lobes as well, m. The data sheet's pattern shows lobes beside
+    /// the main one some 15 dB down, enough for what is close by; the distance is our choice.
+    pub lobe_m: f64,
+    /// How far off the axis the side lobes reach, degrees: from the same pattern.
+    pub lobe_deg: f64,
     /// Transducers that are dead, one bit each; a dead one always reads the farthest range.
     pub dead: u16,
 }
@@ -70,6 +75,8 @@ impl Default for SonarModel {
             bounces: 3,
             cross_talk: 0.01,
             cone_deg: 30.0,
+            lobe_m: 0.4,
+            lobe_deg: 40.0,
             dead: 0,
         }
     }
@@ -84,6 +91,7 @@ impl SonarModel {
             dropout: 0.0,
             ghosts: 0.0,
             cross_talk: 0.0,
+            lobe_m: 0.0,
             ..SonarModel::default()
         }
     }
@@ -165,13 +173,21 @@ impl Air<'_> {
                 nearest = nearest.min(distance);
             }
         }
-        self.nearest_corner(
-            from,
-            Vec2::at_angle(axis),
-            libm::cos(cone / 2.0),
-            nearest.min(reach),
-        )
-        .or((nearest <= reach).then_some(nearest))
+        let ahead = Vec2::at_angle(axis);
+        if self.model.lobe_m > 0.0 {
+            let lobe = self.model.lobe_deg.to_radians();
+            for angle in [axis - lobe, axis + lobe] {
+                if let Echo::Heard(distance) = self.cast(from, Vec2::at_angle(angle), self.model.lobe_m) {
+                    nearest = nearest.min(distance);
+                }
+            }
+            let within = nearest.min(self.model.lobe_m);
+            if let Some(corner) = self.nearest_corner(from, ahead, libm::cos(lobe), within) {
+                nearest = corner;
+            }
+        }
+        self.nearest_corner(from, ahead, libm::cos(cone / 2.0), nearest.min(reach))
+            .or((nearest <= reach).then_some(nearest))
     }
 
     /// What becomes of the sound along one ray.

@@ -60,6 +60,14 @@ static DECLARATION: Declaration = Declaration {
             about: "from a halt message to brakes that grip: a beat of the layer, two of the motor unit",
         },
         Parameter {
+            name: "lost",
+            takes: Takes::Span {
+                default: Some(Span::millis(2600)),
+            },
+            unit: "",
+            about: "how long an echo that is heard no more stands: two maps, three losses in a row are rare",
+        },
+        Parameter {
             name: "blind",
             takes: Takes::Span {
                 default: Some(Span::millis(1600)),
@@ -87,6 +95,8 @@ const fn number(name: &'static str, default: f64, unit: &'static str, about: &'s
 const FAR_M: f64 = 2.2;
 /// Farther than anything within a second's reach: no echo.
 const NO_ECHO_M: f64 = 5.0;
+/// A sonar tells nothing nearer than six inches; what reads about that may as well touch, metres.
+const TOUCHING_M: f64 = 0.2;
 /// Radius of a person: half a shoulder breadth.
 const PERSON_M: f64 = 0.22;
 /// Backward per sideways from which on a mark lies behind: 30 degrees back from abeam.
@@ -133,6 +143,7 @@ struct Collide {
     start: f64,
     margin: f64,
     latency: Span,
+    lost: Span,
     blind: Span,
 }
 
@@ -148,6 +159,7 @@ impl Collide {
             start: settings.number("start").max(0.01),
             margin: settings.number("margin"),
             latency: settings.span("latency"),
+            lost: settings.span("lost"),
             blind: settings.span("blind"),
         }
     }
@@ -157,13 +169,14 @@ impl Collide {
         std::array::from_fn(|index| {
             let range = map.ranges[index];
             if range < FAR_M {
+                let range = if range < TOUCHING_M { 0.0 } else { range };
                 let middle = self.radius + range + PERSON_M;
                 let arc = ARC.map(|off| Spot::from(pose, middle, bearing(index) + off));
                 let resting = before.iter().flatten().any(|old| same_place(&old.arc, &arc));
                 return Some(Mark { arc, at, resting });
             }
             // An echo that was near a second ago and now is none was lost: the older one stands for it.
-            let lost = |mark: &&Mark| range > NO_ECHO_M && at.since(mark.at) < self.blind;
+            let lost = |mark: &&Mark| range > NO_ECHO_M && at.since(mark.at) < self.lost;
             let same_way = |mark: &&Mark| {
                 let seen = mark.arc[1].seen_from(pose);
                 let off = wrap(libm::atan2(seen.y, seen.x) - bearing(index));
@@ -214,10 +227,10 @@ impl Collide {
     }
 }
 
-/// Whether two arcs have a point in common, as near as sonar can tell.
+/// Whether two arcs are of one place, as near as sonar can tell. Their ends don't count: who walks past the
+/// robot leaves one cone where the next begins.
 fn same_place(a: &[Spot; 3], b: &[Spot; 3]) -> bool {
-    let near = |p: &Spot, q: &Spot| libm::hypot(p.x - q.x, p.y - q.y) < RESTING_M;
-    a.iter().any(|p| b.iter().any(|q| near(p, q)))
+    libm::hypot(a[1].x - b[1].x, a[1].y - b[1].y) < RESTING_M
 }
 
 /// How far it is from (x, y) to the front half of a disc of `radius` about the origin; endless from behind,

@@ -42,7 +42,7 @@ static DECLARATION: Declaration = Declaration {
     )],
     parameters: &[
         number("pictures", 3.0, "1", "how many pictures make a look"),
-        number("half_width", 0.38, "m", "what must be free on either side of a way"),
+        number("half_width", 0.48, "m", "what must be free on either side of a way"),
         number("short", 0.8, "m", "how far before what ends a way to stop"),
         number("least", 1.5, "m", "ways shorter than this lead nowhere"),
         number("most", 6.0, "m", "farther than this stereo is not to be trusted"),
@@ -177,9 +177,9 @@ mod tests {
     fn a_gap_narrower_than_the_robot_is_no_way() {
         let mut fan = [2.0; STRIPS];
         fan[6] = 8.0;
-        assert!(free_way(&fan, 6, 0.38) < 2.1, "{}", free_way(&fan, 6, 0.38));
-        // Ten degrees either side of it at two metres are 0.35 m.
+        assert!(free_way(&fan, 6, 0.48) < 2.1, "{}", free_way(&fan, 6, 0.48));
+        // Fifteen degrees either side of it at two metres are 0.54 m.
         fan[3..=9].fill(8.0);
-        assert!(free_way(&fan, 6, 0.38) > 7.0, "{}", free_way(&fan, 6, 0.38));
+        assert!(free_way(&fan, 6, 0.48) > 7.0, "{}", free_way(&fan, 6, 0.48));
     }
 }
