@@ -17,7 +17,7 @@ const STOCK: &str = "stock";
 
 /// Kinds that go by one name, such as `hold` and `hold.bit`; a kind of a creature stands alone.
 struct Family {
-    group: String,
+    group: &'static str,
     kinds: Vec<&'static Declaration>,
 }
 
@@ -60,20 +60,19 @@ fn stem(name: &str) -> &str {
 
 /// Families by group, the stock modules first, each group in order of name.
 fn families(known: &[&'static Declaration]) -> Vec<Family> {
-    let mut families: Vec<Family> = stock::FAMILIES
-        .iter()
-        .map(|family| Family {
-            group: STOCK.into(),
-            kinds: family.iter().map(|k| k.declaration).collect(),
-        })
-        .collect();
-    for &declaration in known.iter().filter(|d| group_of(d) != STOCK) {
-        families.push(Family {
-            group: group_of(declaration).into(),
-            kinds: vec![declaration],
-        });
+    let mut families: Vec<Family> = Vec::new();
+    for &declaration in known {
+        let group = group_of(declaration);
+        let same = |f: &&mut Family| group == STOCK && stem(f.kinds[0].name) == stem(declaration.name);
+        match families.iter_mut().find(same) {
+            Some(family) => family.kinds.push(declaration),
+            None => families.push(Family {
+                group,
+                kinds: vec![declaration],
+            }),
+        }
     }
-    families.sort_by_key(|f| (f.group != STOCK, f.group.clone(), f.kinds[0].name));
+    families.sort_by_key(|f| (f.group != STOCK, f.group, f.kinds[0].name));
     families
 }
 
@@ -96,7 +95,7 @@ fn listed(families: &[Family]) -> String {
         if family.group != group {
             let gap = if group.is_empty() { "" } else { "\n" };
             text += &format!("{gap}{}\n", family.group);
-            group = &family.group;
+            group = family.group;
         }
         let first = family.kinds[0];
         text += &format!("  {:<wide$}  {}{}\n", first.name, first.about, others(family));
@@ -236,11 +235,23 @@ fn table(title: &str, rows: impl Iterator<Item = [String; 5]>) -> String {
 }
 
 fn range(low: f64, high: f64) -> String {
+    let [l, h] = [low, high].map(short);
     match (low > f64::MIN, high < f64::MAX) {
-        (true, true) => format!("{low} to {high}"),
-        (true, false) => format!("at least {low}"),
-        (false, true) => format!("at most {high}"),
+        (true, true) => format!("{l} to {h}"),
+        (true, false) => format!("at least {l}"),
+        (false, true) => format!("at most {h}"),
         (false, false) => String::new(),
+    }
+}
+
+/// A number as a person would write it.
+fn short(number: f64) -> String {
+    const MANY: f64 = 1e6;
+    let rounded = (number * 1e4).round() / 1e4;
+    if number.abs() >= MANY {
+        format!("{number:e}")
+    } else {
+        rounded.to_string()
     }
 }
 
@@ -248,7 +259,10 @@ fn range(low: f64, high: f64) -> String {
 fn takes_text(takes: &Takes) -> [String; 2] {
     let default = |d: Option<String>| d.map_or("must be given".into(), |d| format!("default {d}"));
     let [shown, range] = match takes {
-        Takes::Number { low, high, default } => [default.map(|n| n.to_string()), Some(range(*low, *high))],
+        Takes::Number { low, high, default } => [
+            default.map(short),
+            Some(format!("number {}", range(*low, *high)).trim_end().into()),
+        ],
         Takes::Span { default } => {
             let none = |d: ipc::clock::Span| {
                 if d.0 == 0 {
@@ -267,8 +281,10 @@ fn takes_text(takes: &Takes) -> [String; 2] {
             most,
             default,
         } => {
-            let range = format!("up to {most} numbers {}", range(*low, *high));
-            [default.map(|n| format!("{n:?}")), Some(range.trim_end().into())]
+            let range = format!("up to {most} numbers, {}", range(*low, *high));
+            let list =
+                |n: &[f64]| format!("[{}]", n.iter().map(|n| short(*n)).collect::<Vec<_>>().join(", "));
+            [default.map(list), Some(range.trim_end_matches([',', ' ']).into())]
         }
         Takes::Spans { most, default } => {
             let shown =
