@@ -81,7 +81,7 @@ fn everything() -> String {
 fn given(d: &Declaration, name: &str, takes: &Takes) -> Option<String> {
     match (d.name, name) {
         ("counter", "high") => return Some("3".into()),
-        ("timer" | "monoflop", "length") => return Some("1ms").map(|s| format!("{s:?}")),
+        ("timer" | "monoflop", "length") => return Some("\"1ms\"".into()),
         (_, "every") => return Some("\"7ms\"".into()),
         _ => {}
     }
