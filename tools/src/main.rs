@@ -1,7 +1,9 @@
 //! `subsumectl`: looks at a running creature, stops it, checks creature files.
 
 mod check;
+mod example;
 mod live;
+mod modules;
 mod test;
 mod watch;
 
@@ -86,7 +88,7 @@ enum Command {
     },
     /// Lists the kinds of module, or explains one
     Modules {
-        /// A kind of module
+        /// A kind of module, such as threshold, or a group, such as allen
         name: Option<String>,
     },
 }
@@ -126,7 +128,7 @@ fn main() -> ExitCode {
                 json,
             });
         }
-        Command::Modules { name } => return check::modules(name.as_deref(), json),
+        Command::Modules { name } => return modules::modules(name.as_deref(), json),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,
