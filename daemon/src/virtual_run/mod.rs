@@ -308,14 +308,15 @@ impl VirtualRun {
     fn look(&mut self, chosen: impl Fn(Option<Time>) -> bool) {
         let now = self.now;
         let all = !self.inputs.is_empty();
-        for (station, due) in self.machine.stations.iter_mut().zip(&self.due) {
-            if all || chosen(*due) {
+        let own = self.machine.stations.iter_mut().zip(&self.due);
+        let own = own.map(|(station, due)| (station, *due));
+        let guests = self.guests.here.iter_mut().map(|g| (&mut g.station, g.due));
+        for (station, due) in own.chain(guests) {
+            if all || chosen(due) {
                 station.running.look(now);
-            }
-        }
-        for guest in &mut self.guests.here {
-            if all || chosen(guest.due) {
-                guest.station.running.look(now);
+            } else {
+                // Its registers look when it steps; its inhibitors only when others have written again.
+                station.running.look_at_inhibitors(now);
             }
         }
         if let Some(body) = &mut self.machine.body
@@ -397,26 +398,9 @@ impl VirtualRun {
         }
         for place in 0..self.order.len() {
             let which = self.order[place];
-            let mut written = Vec::new();
-            for (_, output, words) in puts.iter().filter(|(w, ..)| *w == Some(which)) {
-                if written.contains(output) {
-                    // The second message of this moment on one wire: the first is taken in before.
-                    self.look(|_| true);
-                }
-                self.station(which).running.put(*output, t, words);
-                self.scan(which, *output);
-                written.push(*output);
-            }
-            if self.due_of(which) != Some(t) {
-                continue;
-            }
-            if written
-                .iter()
-                .any(|o| self.station(which).running.outlet(*o).is_staged())
-            {
-                self.look(|_| true);
-            }
-            self.beat(which);
+            let own = puts.iter().filter(|(w, ..)| *w == Some(which));
+            let own: Vec<(usize, &Words)> = own.map(|(_, output, words)| (*output, *words)).collect();
+            self.write(which, &own);
         }
         let sensors = puts.iter().filter(|(which, ..)| which.is_none());
         let mut written = Vec::new();
@@ -438,20 +422,56 @@ impl VirtualRun {
         }
     }
 
-    /// The layer `which` writes what it staged, and is due again.
-    fn beat(&mut self, which: Which) {
+    /// The layer `which` writes what is put on its wires and, if it is due, what it staged. Where a wire carries
+    /// several messages at this one moment, every other wire of the layer is written before the first of them
+    /// is taken in, and that before the next is written.
+    fn write(&mut self, which: Which, puts: &[(usize, &Words)]) {
         let t = self.now;
-        let station = self.station(which);
-        station.running.commit(t);
-        station.gauge.beat(t);
-        let next = Some(t + station.spec.period);
-        match which {
-            Which::Own(index) => self.due[index] = next,
-            Which::Guest(index) => self.guests.here[index].due = next,
+        let due = self.due_of(which) == Some(t);
+        if puts.is_empty() {
+            if due {
+                self.station(which).running.commit(t);
+                self.scan_all(which);
+            }
+        } else {
+            self.write_in_rounds(which, puts, due);
         }
-        if self.log.is_some() {
+        if due {
             let station = self.station(which);
-            for output in 0..station.running.outputs() {
+            station.gauge.beat(t);
+            let next = Some(t + station.spec.period);
+            match which {
+                Which::Own(index) => self.due[index] = next,
+                Which::Guest(index) => self.guests.here[index].due = next,
+            }
+        }
+    }
+
+    fn write_in_rounds(&mut self, which: Which, puts: &[(usize, &Words)], due: bool) {
+        let t = self.now;
+        let outputs = self.station(which).running.outputs();
+        let on = |output: usize| puts.iter().filter(move |(o, _)| *o == output);
+        let rounds = (0..outputs).map(|o| on(o).count()).max().unwrap_or(0);
+        for round in 0..=rounds {
+            if round > 0 {
+                self.look(|_| true);
+            }
+            for output in 0..outputs {
+                let running = &mut self.station(which).running;
+                let wrote = match on(output).nth(round) {
+                    Some((_, words)) => running.put(output, t, words),
+                    None => due && on(output).count() == round && running.commit_one(output, t),
+                };
+                if wrote {
+                    self.scan(which, output);
+                }
+            }
+        }
+    }
+
+    fn scan_all(&mut self, which: Which) {
+        if self.log.is_some() {
+            for output in 0..self.station(which).running.outputs() {
                 self.scan(which, output);
             }
         }
