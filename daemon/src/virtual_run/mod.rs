@@ -453,14 +453,18 @@ impl VirtualRun {
         let on = |output: usize| puts.iter().filter(move |(o, _)| *o == output);
         let rounds = (0..outputs).map(|o| on(o).count()).max().unwrap_or(0);
         for round in 0..=rounds {
-            if round > 0 {
+            let running = &self.station(which).running;
+            let staged = |o: usize| due && on(o).count() == round && running.outlet(o).is_staged();
+            let speaks = |o: &usize| on(*o).count() > round || staged(*o);
+            let speaking: Vec<usize> = (0..outputs).filter(speaks).collect();
+            if round > 0 && !speaking.is_empty() {
                 self.look(|_| true);
             }
-            for output in 0..outputs {
+            for output in speaking {
                 let running = &mut self.station(which).running;
                 let wrote = match on(output).nth(round) {
                     Some((_, words)) => running.put(output, t, words),
-                    None => due && on(output).count() == round && running.commit_one(output, t),
+                    None => running.commit_one(output, t),
                 };
                 if wrote {
                     self.scan(which, output);

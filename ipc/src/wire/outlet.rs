@@ -66,6 +66,11 @@ impl Outlet {
         self.staged = Some(words);
     }
 
+    /// Whether a message waits for the end of the beat.
+    pub fn is_staged(&self) -> bool {
+        self.staged.is_some()
+    }
+
     /// Writes the staged message, stamped `u`, unless an inhibitor's window holds. Says whether it wrote.
     pub fn commit(&mut self, u: Time, gone: impl FnMut(TapEnd)) -> bool {
         self.look(u, gone);

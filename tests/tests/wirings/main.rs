@@ -21,8 +21,8 @@ use scenario::kinds;
 use drawn::{Case, case};
 use model::{Account, expected};
 
-/// Cases tried: some seconds of a debug build.
-const CASES: u32 = 400;
+/// Cases tried: three seconds of a debug build.
+const CASES: u32 = 2000;
 
 /// What really came of `case`.
 fn came(case: &Case, watched: bool, shuffle: Option<u64>) -> (Account, u64) {
