@@ -67,6 +67,10 @@ enum Command {
         #[arg(required = true)]
         files: Vec<PathBuf>,
     },
+    /// Truckin': games, the whole grid, evolution of trucks
+    Truckin(truckin::command::TruckinArgs),
+    /// ADROIT: check, draw, run and change programs of releasing mechanisms
+    Adroit(adroit::command::AdroitArgs),
     /// Runs scenario files on the virtual clock
     Test {
         /// Scenario files, and folders of them
@@ -123,6 +127,8 @@ fn main() -> ExitCode {
         ),
         Command::Reset => live::order(creature, json, Request::Reset, "reset"),
         Command::Check { files } => return check::check(&files, json),
+        Command::Truckin(args) => return truckin::command::command(args),
+        Command::Adroit(args) => return adroit::command::command(args),
         Command::Test {
             paths,
             filter,
