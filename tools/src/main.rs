@@ -4,6 +4,7 @@ mod check;
 mod example;
 mod live;
 mod modules;
+mod prefixes;
 mod test;
 mod watch;
 
@@ -24,7 +25,8 @@ use ipc::control::Request;
     subsumectl halt; subsumectl reset     emergency stop, and its end\n  \
     subsumectl --creature jerry status    another instance\n  \
     subsumectl check mine.toml            every error of a creature file\n  \
-    subsumectl test scenarios/            what must come of a creature, on the virtual clock\n\n\
+    subsumectl test scenarios/            what must come of a creature, on the virtual clock\n  \
+    subsumectl prefixes allen.toml --layers wander.toml --scenarios scenarios/\n\n\
     Status: 0 done; 1 not done (no daemon, refused, an expectation not met); 2 bad input."
 )]
 struct Options {
@@ -86,6 +88,21 @@ enum Command {
         #[arg(long, value_name = "FILE")]
         junit: Option<PathBuf>,
     },
+    /// Tries every prefix of a creature's stack: alone, and while the layers above come and go
+    Prefixes {
+        /// The creature file
+        #[arg(value_name = "CREATURE")]
+        file: PathBuf,
+        /// Manifests of layers that join it
+        #[arg(long, num_args = 1.., value_name = "MANIFEST")]
+        layers: Vec<PathBuf>,
+        /// Scenario files, and folders of them
+        #[arg(long, num_args = 1.., required = true, value_name = "FILE-or-FOLDER")]
+        scenarios: Vec<PathBuf>,
+        /// How often each competence is tried with layers above, each time with other moments
+        #[arg(long, default_value_t = 5, value_name = "N")]
+        seeds: u64,
+    },
     /// Lists the kinds of module, or explains one
     Modules {
         /// A kind of module, such as threshold, or a group, such as allen
@@ -129,6 +146,12 @@ fn main() -> ExitCode {
             });
         }
         Command::Modules { name } => return modules::modules(name.as_deref(), json),
+        Command::Prefixes {
+            file,
+            layers,
+            scenarios,
+            seeds,
+        } => return prefixes::prefixes(&file, &layers, &scenarios, seeds, json),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,
