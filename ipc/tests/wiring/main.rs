@@ -1,0 +1,6 @@
+//! Creature files and manifests: what is wrong with a file is said, exactly and all at once.
+
+mod golden;
+mod kinds;
+mod mutation;
+mod schema;
