@@ -5,8 +5,8 @@
 use std::borrow::Cow;
 use std::ops::Range;
 
-use toml::Spanned;
-use toml::de::{DeTable, DeValue};
+pub use toml::Spanned;
+pub use toml::de::{DeTable, DeValue};
 
 use super::diagnostic::{Findings, one_of};
 use super::rule::Rule;
@@ -49,6 +49,22 @@ impl<'t, 's> Keys<'t, 's> {
     /// Whether `key` is given.
     pub fn has(&self, key: &str) -> bool {
         self.table.contains_key(key)
+    }
+
+    /// The value of `key`, which then still is not asked for.
+    pub fn get(&self, key: &str) -> Option<&'t Spanned<DeValue<'s>>> {
+        self.table.get(key)
+    }
+
+    /// Every key with its place and value, in the order of the file; all of them count as asked for.
+    pub fn all(self) -> impl Iterator<Item = (Placed<String>, &'t Spanned<DeValue<'s>>)> {
+        self.table.iter().map(|(key, value)| {
+            let placed = Placed {
+                value: key.get_ref().to_string(),
+                at: key.span(),
+            };
+            (placed, value)
+        })
     }
 
     /// The value of `key`.
@@ -268,6 +284,22 @@ pub fn array<'t, 's>(
             Vec::new()
         }
     }
+}
+
+/// The elements of a list of at most `most` of `what`.
+pub fn list<'t, 's>(
+    value: &'t Spanned<DeValue<'s>>,
+    what: &str,
+    most: usize,
+    findings: &mut Findings,
+) -> Vec<&'t Spanned<DeValue<'s>>> {
+    let items = array(value, &format!("a list of {what}"), findings);
+    if items.len() > most {
+        let message = format!("the list has {} elements", items.len());
+        let help = format!("expected at most {most}");
+        findings.refuse(Rule::OutOfRange, value.span(), message, help);
+    }
+    items
 }
 
 /// A table.

@@ -51,6 +51,9 @@ static CART: Declaration = Declaration {
         parameter(
             "start",
             Takes::Numbers {
+                low: f64::MIN,
+                high: f64::MAX,
+                most: 3,
                 default: Some(&[0.0, 0.0]),
             },
         ),

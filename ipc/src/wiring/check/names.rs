@@ -65,7 +65,7 @@ impl Checker<'_> {
     }
 
     fn settings(&mut self, mut keys: Keys<'_, '_>, declaration: &'static Declaration) -> Vec<Setting> {
-        let f = &mut *self.findings;
+        let f = &mut self.findings;
         let mut settings = Vec::new();
         for parameter in declaration.parameters {
             let given = match parameter.takes.default() {
@@ -79,10 +79,15 @@ impl Checker<'_> {
                 Takes::Word { words, .. } => {
                     doc::word(v, parameter.name, words, f).map(|i| Setting::Text(words[i].into()))
                 }
-                Takes::Numbers { .. } => {
-                    let items = doc::array(v, "a list of numbers", f);
-                    let numbers = items.iter().filter_map(|n| doc::number(n, f64::MIN, f64::MAX, f));
+                Takes::Numbers { low, high, most, .. } => {
+                    let items = doc::list(v, "numbers", most, f);
+                    let numbers = items.iter().filter_map(|n| doc::number(n, low, high, f));
                     Some(Setting::Numbers(numbers.collect()))
+                }
+                Takes::Spans { most, .. } => {
+                    let items = doc::list(v, "times such as [\"20ms\"]", most, f);
+                    let spans = items.iter().filter_map(|s| doc::span(s, false, f));
+                    Some(Setting::Spans(spans.collect()))
                 }
             });
             settings.push(read.or(parameter.takes.default()).unwrap_or(Setting::Bit(false)));

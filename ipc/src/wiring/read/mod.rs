@@ -9,7 +9,7 @@ mod taking;
 use std::ops::Range;
 
 use toml::Spanned;
-use toml::de::{DeTable, DeValue};
+use toml::de::DeValue;
 
 use super::creature::{Account, How, Overrun, PortName};
 use super::diagnostic::Findings;
@@ -44,6 +44,7 @@ pub(super) struct RawHalt {
     pub(super) reflexes: Vec<Placed<PortName>>,
     pub(super) hold: Option<Placed<Span>>,
     pub(super) stale: Option<Placed<Span>>,
+    pub(super) watchdog_device: Option<Placed<String>>,
 }
 
 #[derive(Default)]
@@ -100,13 +101,8 @@ pub(super) struct RawTap {
     pub(super) time_constant: Option<Placed<Span>>,
 }
 
-/// The parts of the file or, if it is `inline`, of a table within another file, whose name may be left out.
-pub(super) fn read<'t, 's>(
-    root: &'t Spanned<DeTable<'s>>,
-    inline: bool,
-    findings: &mut Findings,
-) -> Parts<'t, 's> {
-    let keys = Keys::new(root.get_ref(), root.span(), grammar::FILE.what);
+/// The parts of the file or, if it is `inline`, of a table within another file, which may go without a name.
+pub(super) fn read<'t, 's>(keys: Keys<'t, 's>, inline: bool, findings: &mut Findings) -> Parts<'t, 's> {
     let nameless = inline && !keys.has("creature");
     let mut file = Taking::new(keys, &grammar::FILE, findings);
     let mut parts = Parts {
@@ -150,6 +146,10 @@ fn halt(value: &Spanned<DeValue<'_>>, findings: &mut Findings) -> Option<RawHalt
         reflexes: table.ports("reflex"),
         hold: table.time("hold"),
         stale: table.time("stale"),
+        watchdog_device: table.text(
+            "watchdog_device",
+            "the path of a watchdog device such as \"/dev/watchdog\"",
+        ),
     };
     table.finish();
     Some(halt)
