@@ -46,6 +46,18 @@ impl<'t, 's> Keys<'t, 's> {
         self.at.clone()
     }
 
+    /// What the table is called in errors.
+    pub fn what(&self) -> &str {
+        &self.what
+    }
+
+    /// Whether there are keys that were not asked for.
+    pub fn has_others(&self) -> bool {
+        self.table
+            .iter()
+            .any(|(k, _)| !self.known.contains(&k.get_ref().as_ref()))
+    }
+
     /// Whether `key` is given.
     pub fn has(&self, key: &str) -> bool {
         self.table.contains_key(key)
@@ -135,12 +147,13 @@ pub fn word(
     words: &[&str],
     findings: &mut Findings,
 ) -> Option<usize> {
-    let expected = one_of(what, "", words.iter().copied());
+    let plain = |help: String| help.replace(&format!("one of the {what}s "), "one of ");
+    let expected = plain(one_of(what, "", words.iter().copied()));
     let expected = expected.strip_prefix("expected ").unwrap_or(&expected);
     let given = text(value, expected, findings)?;
     let found = words.iter().position(|w| *w == given.value);
     if found.is_none() {
-        let help = findings.one_of(what, &given.value, words.iter().copied());
+        let help = plain(findings.one_of(what, &given.value, words.iter().copied()));
         let message = format!("unknown {what} {:?}", given.value);
         findings.refuse(Rule::UnknownWord, given.at, message, help);
     }

@@ -94,6 +94,26 @@ pub enum Kinds {
     Bodies,
 }
 
+impl Value {
+    /// How such a value looks in a file.
+    pub fn example(&self) -> String {
+        match self {
+            Value::Name | Value::ModuleKind | Value::BodyKind => "\"...\"".into(),
+            Value::Whole { low, .. } => low.to_string(),
+            Value::Number { low, .. } => low.to_string(),
+            Value::Time { .. } => "\"20ms\"".into(),
+            Value::Bit => "true".into(),
+            Value::Word(words) => format!("{:?}", words[0]),
+            Value::Path => "\"/...\"".into(),
+            Value::Port => "\"module.port\"".into(),
+            Value::Ports | Value::PortsOrAll => "[\"module.port\"]".into(),
+            Value::Wires => "[\"module.output -> module.input\"]".into(),
+            Value::Accounts | Value::Tables(_) => "[...]".into(),
+            Value::Table(_) | Value::Named(_) => "{ ... }".into(),
+        }
+    }
+}
+
 const fn key(name: &'static str, takes: Value, default: &'static str, about: &'static str) -> Key {
     Key {
         name,

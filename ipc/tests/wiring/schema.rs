@@ -113,6 +113,15 @@ fn against(schema: &Json, value: &Json, root: &Json, path: &str, wrong: &mut Vec
             }
         }
         for (key, value) in object {
+            if schema["propertyNames"].is_object() {
+                against(
+                    &schema["propertyNames"],
+                    &Json::from(key.as_str()),
+                    root,
+                    path,
+                    wrong,
+                );
+            }
             let path = format!("{path}.{key}");
             if let Some(inner) = schema["properties"].get(key) {
                 against(inner, value, root, &path, wrong);

@@ -151,8 +151,8 @@ struct Checker<'c> {
     modules: HashMap<String, Known>,
     /// How many outputs there are so far.
     outputs: usize,
-    /// Which output feeds each input, and where that is said.
-    writers: HashMap<PortName, Placed<PortName>>,
+    /// Which output feeds each input, and where both stand.
+    writers: HashMap<PortName, (Placed<PortName>, Range<usize>)>,
     /// How many taps stand on each port (true for inputs).
     tapped: HashMap<(bool, PortName), usize>,
 }
@@ -214,7 +214,7 @@ impl<'c> Checker<'c> {
 
     /// What the file as a whole must have and must not have.
     fn shape(&mut self, parts: &Parts<'_, '_>) {
-        if parts.layers.is_empty() && !self.findings.has_lost() {
+        if parts.layers.is_empty() && !self.findings.has_lost_lines() {
             let help = "add a [[layer]] with name, level and period";
             self.findings
                 .refuse(Rule::NoLayer, self.at.clone(), "there is no layer", help);

@@ -116,7 +116,19 @@ pub(super) fn read<'t, 's>(keys: Keys<'t, 's>, inline: bool, findings: &mut Find
     };
     parts.body = file.raw("body").and_then(|v| body(v, file.findings));
     if let Some(layers) = file.raw("layer") {
-        for value in doc::array(layers, "layers, each as a [[layer]] table", file.findings) {
+        if layers.get_ref().is_table() {
+            file.findings.lose_lines();
+            let help = "expected a list of layers: write [[layer]], with two brackets";
+            file.findings
+                .refuse(Rule::WrongType, layers.span(), "[layer] is a single table", help);
+        } else if !layers.get_ref().is_array() {
+            file.findings.lose_lines();
+        }
+        let items = match layers.get_ref().is_table() {
+            true => Vec::new(),
+            false => doc::array(layers, "layers, each as a [[layer]] table", file.findings),
+        };
+        for value in items {
             parts.layers.extend(layer::layer(value, file.findings));
         }
     }
