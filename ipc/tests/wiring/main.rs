@@ -2,5 +2,6 @@
 
 mod golden;
 mod kinds;
+mod lines;
 mod mutation;
 mod schema;

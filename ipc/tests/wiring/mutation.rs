@@ -14,10 +14,10 @@ const TEXT_MAX: usize = 1 << 20;
 const ROUNDS: usize = 3_000;
 
 /// A small generator (xorshift64*): which texts are tried is part of the test.
-struct Dice(u64);
+pub(crate) struct Dice(pub(crate) u64);
 
 impl Dice {
-    fn roll(&mut self, sides: usize) -> usize {
+    pub(crate) fn roll(&mut self, sides: usize) -> usize {
         self.0 ^= self.0 >> 12;
         self.0 ^= self.0 << 25;
         self.0 ^= self.0 >> 27;
