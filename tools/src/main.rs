@@ -4,6 +4,8 @@ mod check;
 mod example;
 mod live;
 mod modules;
+mod new;
+mod paint;
 mod prefixes;
 mod test;
 mod watch;
@@ -26,7 +28,8 @@ use ipc::control::Request;
     subsumectl --creature jerry status    another instance\n  \
     subsumectl check mine.toml            every error of a creature file\n  \
     subsumectl test scenarios/            what must come of a creature, on the virtual clock\n  \
-    subsumectl prefixes allen.toml --layers wander.toml --scenarios scenarios/\n\n\
+    subsumectl prefixes allen.toml --layers wander.toml --scenarios scenarios/\n  \
+    subsumectl new creature mine          a creature to start from\n\n\
     Status: 0 done; 1 not done (no daemon, refused, an expectation not met); 2 bad input."
 )]
 struct Options {
@@ -63,11 +66,27 @@ enum Command {
     Halt,
     /// Ends an emergency stop
     Reset,
-    /// Checks creature files and shows every error with its place
+    /// Checks creature files and manifests, and shows every error with its place
     Check {
-        /// Creature files
+        /// Creature files, and manifests of layers beside the file of their creature
         #[arg(required = true)]
         files: Vec<PathBuf>,
+        /// Checks the files as manifests of layers that join this creature
+        #[arg(long = "in", value_name = "CREATURE.toml")]
+        host: Option<PathBuf>,
+        /// Takes every file for a manifest
+        #[arg(long)]
+        manifest: bool,
+        /// When to use colours
+        #[arg(long, value_enum, default_value_t, value_name = "WHEN")]
+        color: paint::Color,
+    },
+    /// Prints the JSON Schema of creature files, for editors
+    Schema,
+    /// Writes a folder to start from: a creature, or a layer in Rust
+    New {
+        #[command(subcommand)]
+        what: new::New,
     },
     /// Truckin': games, the whole grid, evolution of trucks
     Truckin(truckin::command::TruckinArgs),
@@ -128,7 +147,22 @@ fn main() -> ExitCode {
             "halted; `subsumectl reset` ends it",
         ),
         Command::Reset => live::order(creature, json, Request::Reset, "reset"),
-        Command::Check { files } => return check::check(&files, json),
+        Command::Check {
+            files,
+            host,
+            manifest,
+            color,
+        } => {
+            return check::check(&check::Wanted {
+                files: &files,
+                host: host.as_deref(),
+                manifests: manifest,
+                color,
+                json,
+            });
+        }
+        Command::Schema => return check::schema(),
+        Command::New { what } => return new::new(&what, json),
         Command::Truckin(args) => return truckin::command::command(args),
         Command::Adroit(args) => return adroit::command::command(args),
         Command::Test {

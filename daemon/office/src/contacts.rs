@@ -92,7 +92,9 @@ impl Touch {
             let gap = rim.gap(disc);
             if gap <= PART_M {
                 let approach = robot.approach((disc.at - rim.at).unit());
-                self.one(self.people_from + index, gap, time_s, approach, || names[index].clone());
+                self.one(self.people_from + index, gap, time_s, approach, || {
+                    names[index].clone()
+                });
             }
         }
     }

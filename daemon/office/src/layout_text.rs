@@ -255,7 +255,9 @@ fn add_wall(layout: &mut Layout, raw: &RawWall) -> Result<(), Refusal> {
     }
     let first = layout.blocks.len();
     layout.wall(raw.name.get_ref(), (x0, y0), (x1, y1), &doors);
-    layout.blocks[first..].iter_mut().for_each(|piece| piece.surface = raw.surface);
+    layout.blocks[first..]
+        .iter_mut()
+        .for_each(|piece| piece.surface = raw.surface);
     Ok(())
 }
 
@@ -268,7 +270,13 @@ fn add_leaf(layout: &mut Layout, raw: &RawLeaf) -> Result<(), Refusal> {
     }
     let turned = angle(raw.turned.as_ref())?;
     let [x, y] = *raw.at.get_ref();
-    layout.block(raw.name.get_ref(), Kind::Leaf, (x, y), (width, WALL_THICKNESS_M), turned);
+    layout.block(
+        raw.name.get_ref(),
+        Kind::Leaf,
+        (x, y),
+        (width, WALL_THICKNESS_M),
+        turned,
+    );
     Ok(())
 }
 
@@ -277,22 +285,32 @@ fn add_room(layout: &mut Layout, raw: &RawRoom) -> Result<(), Refusal> {
     inside(layout, &raw.to, *raw.to.get_ref())?;
     let ([west, south], [east, north]) = (*raw.from.get_ref(), *raw.to.get_ref());
     if west >= east || south >= north {
-        return refuse(raw.to.span(), "a room goes from its south-west to its north-east".into());
+        return refuse(
+            raw.to.span(),
+            "a room goes from its south-west to its north-east".into(),
+        );
     }
     let name = raw.name.get_ref().clone();
     if layout.rooms.iter().any(|room| room.name == name) {
         return refuse(raw.name.span(), format!("a second room named {name:?}"));
     }
-    layout.rooms.push(Room { name, west, south, east, north });
+    layout.rooms.push(Room {
+        name,
+        west,
+        south,
+        east,
+        north,
+    });
     Ok(())
 }
 
 /// Degrees as written, in rad.
 fn angle(turned: Option<&Spanned<f64>>) -> Result<f64, Refusal> {
     match turned {
-        Some(turned) if !turned.get_ref().is_finite() => {
-            refuse(turned.span(), "an angle must be a finite number of degrees".into())
-        }
+        Some(turned) if !turned.get_ref().is_finite() => refuse(
+            turned.span(),
+            "an angle must be a finite number of degrees".into(),
+        ),
         Some(turned) => Ok(turned.get_ref().to_radians()),
         None => Ok(0.0),
     }

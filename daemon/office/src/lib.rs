@@ -47,8 +47,8 @@ mod ways;
 
 pub use camera::{CameraModel, STRIPS};
 pub use config::{
-    BaseModel, Config, Drive, FittingsModel, OdometryModel, PEOPLE_MAX, PERSON_RADIUS_M, Pose, ROBOT_RADIUS_M,
-    ROBOTS_MAX,
+    BaseModel, Config, Drive, FittingsModel, OdometryModel, PEOPLE_MAX, PERSON_RADIUS_M, Pose,
+    ROBOT_RADIUS_M, ROBOTS_MAX,
 };
 pub use contacts::{CAUSED_ABOVE_M_S, CONTACTS_KEPT_MAX, Contact, Contacts};
 pub use generator::generate;

@@ -74,15 +74,14 @@ impl Office {
             count as usize <= PEOPLE_MAX,
             "{count} people are more than {PEOPLE_MAX}"
         );
-        assert!(
-            config.others.len() < ROBOTS_MAX,
-            "more than {ROBOTS_MAX} robots"
-        );
+        assert!(config.others.len() < ROBOTS_MAX, "more than {ROBOTS_MAX} robots");
         let mut space = Space::new(&config.layout);
         space.open_all_leaves(&config.layout);
         let ways = Ways::new(&config.layout, &space);
         let first = config.start.unwrap_or(config.layout.start);
-        let starts: Vec<_> = std::iter::once(first).chain(config.others.iter().copied()).collect();
+        let starts: Vec<_> = std::iter::once(first)
+            .chain(config.others.iter().copied())
+            .collect();
         let mut office = Office {
             layout: config.layout.clone(),
             sonar_model: config.sonar,
@@ -165,7 +164,9 @@ impl Office {
         );
         self.time_s += dt_s;
         for (index, inmate) in self.inmates.iter_mut().enumerate() {
-            let wanted = inmate.robot.drive(dt_s, commands.get(index).copied().unwrap_or_default());
+            let wanted = inmate
+                .robot
+                .drive(dt_s, commands.get(index).copied().unwrap_or_default());
             let now = settled(&self.space, &self.discs, index, wanted);
             inmate.robot.settle(dt_s, now);
             self.discs[index] = inmate.robot.disc();

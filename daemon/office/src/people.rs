@@ -231,7 +231,11 @@ impl Person {
             }
             Intent::Chase { look_s, via } => {
                 if gap <= self.stand_off.max(0.001) {
-                    let stay = if self.kind == PersonKind::Cornerer { CORNER_S } else { PESTER_S };
+                    let stay = if self.kind == PersonKind::Cornerer {
+                        CORNER_S
+                    } else {
+                        PESTER_S
+                    };
                     let until_s = around.time_s + noise.between(stay.0, stay.1);
                     self.intent = Intent::Pester { until_s };
                 } else if !headway {
@@ -308,7 +312,11 @@ impl Person {
     }
 
     fn chase(&mut self, time_s: f64, noise: &mut Noise) {
-        let off = if self.kind == PersonKind::Cornerer { CORNER_OFF_M } else { STAND_OFF_M };
+        let off = if self.kind == PersonKind::Cornerer {
+            CORNER_OFF_M
+        } else {
+            STAND_OFF_M
+        };
         self.stand_off = noise.between(off.0, off.1);
         self.intent = Intent::Chase {
             look_s: time_s,
@@ -355,7 +363,11 @@ impl Person {
         }
         let side = core::f64::consts::TAU * self.group.1 as f64 / GROUP as f64;
         let spot = place + Vec2::at_angle(side) * GROUP_RADIUS_M;
-        if around.space.passable(place, spot, PERSON_RADIUS_M) { spot } else { place }
+        if around.space.passable(place, spot, PERSON_RADIUS_M) {
+            spot
+        } else {
+            place
+        }
     }
 
     /// The way point by which an attacker gets at the robot; none when the way is straight.

@@ -141,7 +141,9 @@ impl Air<'_> {
         });
         let own = heard;
         for i in (0..SONARS).filter(|&i| crossed[i] && self.model.dead >> i & 1 == 0) {
-            heard[i] = own[i].min(own[(i + 1) % SONARS]).min(own[(i + SONARS - 1) % SONARS]);
+            heard[i] = own[i]
+                .min(own[(i + 1) % SONARS])
+                .min(own[(i + SONARS - 1) % SONARS]);
         }
         heard
     }
@@ -161,7 +163,11 @@ impl Air<'_> {
                 let (at, onward, gone) = (*at + *onward * HAIR_M, *onward, *gone);
                 echo = match self.cast(at, onward, reach - gone) {
                     Echo::Heard(more) => Echo::Heard(gone + more),
-                    Echo::Reflected { at, onward, gone: more } => Echo::Reflected {
+                    Echo::Reflected {
+                        at,
+                        onward,
+                        gone: more,
+                    } => Echo::Reflected {
                         at,
                         onward,
                         gone: gone + more,

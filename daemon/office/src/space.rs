@@ -127,7 +127,10 @@ impl Space {
         // corners send sound back where it came from.
         let standing = self.edges.iter().zip(&self.there).filter(|(_, there)| **there);
         let mut corners: Vec<Vec2> = standing.flat_map(|(edges, _)| *edges).collect();
-        corners.retain(|&corner| self.nearest(corner, 0.0).is_none_or(|near| near.distance > -0.001));
+        corners.retain(|&corner| {
+            self.nearest(corner, 0.0)
+                .is_none_or(|near| near.distance > -0.001)
+        });
         self.corners = corners;
     }
 

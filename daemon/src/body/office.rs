@@ -8,7 +8,8 @@
 use std::sync::{Arc, Mutex, MutexGuard};
 
 use ::office::{
-    CameraModel, Config, Drive, KEPT, Layout, OdometryModel, Office, ROBOT_RADIUS_M, ROBOTS_MAX, SONARS, SonarModel,
+    CameraModel, Config, Drive, KEPT, Layout, OdometryModel, Office, ROBOT_RADIUS_M, ROBOTS_MAX, SONARS,
+    SonarModel,
 };
 use ipc::clock::{Span, Time};
 use ipc::message::{Kind, Map, Payload, Pose};
@@ -74,24 +75,69 @@ static DECLARATION: Declaration = Declaration {
             unit: "",
             about: "the standard office, one empty room of 8 m by 6 m, one of the ten kept, one drawn from a seed",
         },
-        count("number", 1.0, 1e15, "which of the kept offices, or the seed of a generated one"),
-        count("talkers", 0.0, 20.0, "people who stand in groups of three and talk"),
+        count(
+            "number",
+            1.0,
+            1e15,
+            "which of the kept offices, or the seed of a generated one",
+        ),
+        count(
+            "talkers",
+            0.0,
+            20.0,
+            "people who stand in groups of three and talk",
+        ),
         count("cornerers", 0.0, 10.0, "people who corner the robot"),
         number("noise", 0.02, 1.0, "m", "error of a sonar range, one sigma"),
         number("dropout", 0.01, 1.0, "1", "share of sonar ranges that are lost"),
-        number("ghosts", 0.3, 1.0, "1", "share of mirrored echoes that come home after several bounces"),
-        number("cross_talk", 0.01, 1.0, "1", "share of ranges that are a neighbour's"),
-        number("specular", 30.0, 90.0, "deg", "plain surfaces met at less than this are mirrors to sound"),
-        number("polished", 55.0, 90.0, "deg", "the same for polished surfaces and glass"),
+        number(
+            "ghosts",
+            0.3,
+            1.0,
+            "1",
+            "share of mirrored echoes that come home after several bounces",
+        ),
+        number(
+            "cross_talk",
+            0.01,
+            1.0,
+            "1",
+            "share of ranges that are a neighbour's",
+        ),
+        number(
+            "specular",
+            30.0,
+            90.0,
+            "deg",
+            "plain surfaces met at less than this are mirrors to sound",
+        ),
+        number(
+            "polished",
+            55.0,
+            90.0,
+            "deg",
+            "the same for polished surfaces and glass",
+        ),
         number("cone", 30.0, 60.0, "deg", "full width of a sonar's cone"),
         Parameter {
             name: "dead",
-            takes: Takes::Numbers { low: 0.0, high: 11.0, most: 12, default: Some(&[]) },
+            takes: Takes::Numbers {
+                low: 0.0,
+                high: 11.0,
+                most: 12,
+                default: Some(&[]),
+            },
             unit: "",
             about: "sonars that hear nothing, numbered from 0, straight ahead, counter-clockwise",
         },
         number("drift", 0.01, 1.0, "1", "error of the wheels' size, one sigma"),
-        number("slip", 0.01, 1.0, "m", "error of the odometry after one metre, one sigma"),
+        number(
+            "slip",
+            0.01,
+            1.0,
+            "m",
+            "error of the odometry after one metre, one sigma",
+        ),
         number("compass", 0.02, 1.0, "rad", "error of the compass, one sigma"),
         Parameter {
             name: "picture",
@@ -231,7 +277,12 @@ impl OfficeWorld {
             drives: [Drive::default(); ROBOTS_MAX],
             last: None,
         };
-        OfficeWorld::of(Arc::new(Mutex::new(shared)), 0, config.sonar.range_max_m, *picture)
+        OfficeWorld::of(
+            Arc::new(Mutex::new(shared)),
+            0,
+            config.sonar.range_max_m,
+            *picture,
+        )
     }
 
     fn of(shared: Arc<Mutex<Shared>>, robot: usize, range_max: f64, picture: Span) -> OfficeWorld {

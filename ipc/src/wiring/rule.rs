@@ -75,6 +75,8 @@ rules! {
     TooManyWires = "too-many-wires",
     /// A user or group is a name or a number.
     BadAccount = "bad-account",
+    /// A path is absolute.
+    BadPath = "bad-path",
     /// The kind of a module or body is one the program was built with.
     UnknownKind = "unknown-kind",
     /// A layer has a name of its own.

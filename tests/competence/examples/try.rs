@@ -46,5 +46,8 @@ fn main() {
     });
     let figures = all.into_inner().expect("whole");
     println!("{}", table::text(&[Measured { row, figures }]));
-    println!("{:.0} simulated seconds a second", seeds as f64 * hours * 3600.0 / begun.elapsed().as_secs_f64());
+    println!(
+        "{:.0} simulated seconds a second",
+        seeds as f64 * hours * 3600.0 / begun.elapsed().as_secs_f64()
+    );
 }

@@ -26,9 +26,16 @@ fn estimate(measured: &Measured, title: &str) -> Estimate {
 
 /// Every goal that the rows at hand can tell of.
 pub fn all(measured: &[Measured]) -> Vec<Goal> {
-    let of = |name: &str| measured.iter().find(|m| m.row.name == name && !m.figures.is_empty());
+    let of = |name: &str| {
+        measured
+            .iter()
+            .find(|m| m.row.name == name && !m.figures.is_empty())
+    };
     let mut goals = Vec::new();
-    for it in measured.iter().filter(|m| m.row.dead == 0 && !m.figures.is_empty()) {
+    for it in measured
+        .iter()
+        .filter(|m| m.row.dead == 0 && !m.figures.is_empty())
+    {
         let caused: f64 = it.figures.iter().map(|f| f.caused).sum();
         let hours: f64 = it.figures.iter().map(|f| f.hours).sum();
         goals.push(Goal {
@@ -46,10 +53,22 @@ pub fn all(measured: &[Measured]) -> Vec<Goal> {
         });
     }
     if let (Some(low), Some(high)) = (of("0"), of("01")) {
-        goals.push(times(low, high, "area m2", 3.0, "0+1 covers three times the area of 0"));
+        goals.push(times(
+            low,
+            high,
+            "area m2",
+            3.0,
+            "0+1 covers three times the area of 0",
+        ));
     }
     if let (Some(low), Some(high)) = (of("01"), of("012")) {
-        goals.push(times(low, high, "rooms", 2.0, "0+1+2 visits twice the rooms of 0+1"));
+        goals.push(times(
+            low,
+            high,
+            "rooms",
+            2.0,
+            "0+1+2 visits twice the rooms of 0+1",
+        ));
         let share = estimate(high, "reached %");
         goals.push(Goal {
             what: "0+1+2 reaches 90 % of the places it sets out for".into(),
@@ -71,7 +90,12 @@ fn times(low: &Measured, high: &Measured, title: &str, factor: f64, what: &str) 
     let (a, b) = (estimate(low, title), estimate(high, title));
     Goal {
         what: what.into(),
-        found: format!("{:.2} times ({:.1} against {:.1})", b.value / a.value, b.value, a.value),
+        found: format!(
+            "{:.2} times ({:.1} against {:.1})",
+            b.value / a.value,
+            b.value,
+            a.value
+        ),
         reached: b.value >= factor * a.value,
     }
 }
@@ -90,7 +114,10 @@ fn same(a: &Measured, b: &Measured, title: &str) -> Goal {
     let reached = x.meets(&y) || (difference.low <= 0.0 && difference.high >= 0.0);
     Goal {
         what: format!("{}: {title} as in {}", a.row.title, b.row.title),
-        found: format!("{:.2} ({:.2}-{:.2}) against {:.2} ({:.2}-{:.2})", x.value, x.low, x.high, y.value, y.low, y.high),
+        found: format!(
+            "{:.2} ({:.2}-{:.2}) against {:.2} ({:.2}-{:.2})",
+            x.value, x.low, x.high, y.value, y.low, y.high
+        ),
         reached,
     }
 }

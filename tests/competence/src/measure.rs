@@ -52,7 +52,10 @@ pub fn measure(order: &Order, stop: &AtomicBool, done: &(dyn Fn() + Sync)) -> Ve
                     let Some(figures) = trial::run(order.rows[row], seed, order.hours, &stopped) else {
                         return;
                     };
-                    results.lock().expect("no trial panics holding it").push((row, figures));
+                    results
+                        .lock()
+                        .expect("no trial panics holding it")
+                        .push((row, figures));
                     done();
                 }
             });

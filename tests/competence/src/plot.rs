@@ -43,7 +43,14 @@ pub fn svg(measured: &[Measured]) -> String {
         for (row, estimates) in measured.iter().zip(&all) {
             let position = measured.iter().position(|m| std::ptr::eq(m, row)).unwrap_or(0);
             let place = (x, y + title + line * position as f64);
-            bar(&mut out, place, row.row.title, &estimates[index], top, column.decimals);
+            bar(
+                &mut out,
+                place,
+                row.row.title,
+                &estimates[index],
+                top,
+                column.decimals,
+            );
         }
     }
     out + "</svg>\n"

@@ -80,7 +80,10 @@ mod tests {
         let (few, many) = (ratio(&draw(10, &mut random)), ratio(&draw(1000, &mut random)));
         assert!(few.low < 1.0 && 1.0 < few.high, "{few:?}");
         assert!(many.low < 1.0 && 1.0 < many.high, "{many:?}");
-        assert!(many.high - many.low < (few.high - few.low) / 3.0, "{few:?} {many:?}");
+        assert!(
+            many.high - many.low < (few.high - few.low) / 3.0,
+            "{few:?} {many:?}"
+        );
     }
 
     #[test]

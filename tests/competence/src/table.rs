@@ -42,10 +42,19 @@ fn cells(measured: &[Measured]) -> Vec<Vec<String>> {
 pub fn text(measured: &[Measured]) -> String {
     let mut out = String::new();
     for it in measured {
-        out += &format!("{}  [{}; {} trials]\n", it.row.title, it.row.name, it.figures.len());
+        out += &format!(
+            "{}  [{}; {} trials]\n",
+            it.row.title,
+            it.row.name,
+            it.figures.len()
+        );
         for (estimate, column) in estimates(it).iter().zip(COLUMNS) {
             if estimate.value.is_finite() {
-                out += &format!("  {:<13} {:>24}\n", column.title, shown(estimate, column.decimals));
+                out += &format!(
+                    "  {:<13} {:>24}\n",
+                    column.title,
+                    shown(estimate, column.decimals)
+                );
             }
         }
         out += "\n";

@@ -243,7 +243,9 @@ impl Robot {
         let mut figures = self.figures;
         // A place that is still being made for has been neither reached nor missed.
         let pursuing = self.run.machine.stations.iter();
-        let pursuing = pursuing.filter_map(|s| s.running.state_of("pathplan")).any(|s| s == "pursuing");
+        let pursuing = pursuing
+            .filter_map(|s| s.running.state_of("pathplan"))
+            .any(|s| s == "pursuing");
         if pursuing && self.watch.place.is_some() {
             figures.chosen -= 1.0;
         }

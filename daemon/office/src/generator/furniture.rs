@@ -23,7 +23,11 @@ pub(crate) fn furnish(plan: &mut Plan, noise: &mut Noise) {
             desk(room, &mut pieces, noise);
         }
         for _ in 0..1 + noise.below(2) {
-            let surface = if noise.unit() < 0.3 { Surface::Polished } else { Surface::Plain };
+            let surface = if noise.unit() < 0.3 {
+                Surface::Polished
+            } else {
+                Surface::Plain
+            };
             let size = (noise.between(0.7, 1.2), noise.between(0.35, 0.5));
             by_the_wall(room, "cabinet", size, surface, &mut pieces, noise);
         }
@@ -140,7 +144,11 @@ fn screens(room: &Room, pieces: &mut Vec<Piece>, noise: &mut Noise) {
 fn somewhere((west, south, east, north): Rect, from_wall: f64, noise: &mut Noise) -> Vec2 {
     let between = |low: f64, high: f64, noise: &mut Noise| {
         let draw = noise.unit();
-        if low < high { low + (high - low) * draw } else { (low + high) / 2.0 }
+        if low < high {
+            low + (high - low) * draw
+        } else {
+            (low + high) / 2.0
+        }
     };
     let x = between(west + from_wall, east - from_wall, noise);
     vec2(x, between(south + from_wall, north - from_wall, noise))
@@ -150,9 +158,8 @@ fn somewhere((west, south, east, north): Rect, from_wall: f64, noise: &mut Noise
 fn fits(room: &Room, piece: &Piece, pieces: &[Piece]) -> bool {
     let (west, south, east, north) = room.rect;
     let corners = corners(piece);
-    let inside = |c: &Vec2| {
-        c.x > west + 0.06 && c.x < east - 0.06 && c.y > south + 0.06 && c.y < north - 0.06
-    };
+    let inside =
+        |c: &Vec2| c.x > west + 0.06 && c.x < east - 0.06 && c.y > south + 0.06 && c.y < north - 0.06;
     if !corners.iter().all(inside) {
         return false;
     }
@@ -162,7 +169,11 @@ fn fits(room: &Room, piece: &Piece, pieces: &[Piece]) -> bool {
     let spread = if corridor { 0.3 } else { MIDDLE_M };
     let mut ways: Vec<(Vec2, Vec2, f64)> = vec![(middle, middle, spread)];
     if corridor {
-        let long = if east - west > north - south { vec2(east - west, 0.0) } else { vec2(0.0, north - south) };
+        let long = if east - west > north - south {
+            vec2(east - west, 0.0)
+        } else {
+            vec2(0.0, north - south)
+        };
         ways.push((middle - long * 0.5, middle + long * 0.5, 0.3));
         ways.extend(room.doors.iter().map(|door| (*door, *door, 1.0)));
     } else {
@@ -192,7 +203,12 @@ fn outline(corners: &[Vec2; 4]) -> impl Iterator<Item = Vec2> {
 fn corners(piece: &Piece) -> [Vec2; 4] {
     let along = Vec2::at_angle(piece.turned.to_radians());
     let (u, v) = (along * (piece.size.0 / 2.0), along.left() * (piece.size.1 / 2.0));
-    [piece.at + u + v, piece.at - u + v, piece.at - u - v, piece.at + u - v]
+    [
+        piece.at + u + v,
+        piece.at - u + v,
+        piece.at - u - v,
+        piece.at + u - v,
+    ]
 }
 
 /// m from a point to a piece.

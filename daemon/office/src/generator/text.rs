@@ -33,17 +33,37 @@ fn fill(out: &mut String, seed: u64, plan: &Plan) -> std::fmt::Result {
         writeln!(out, "\n[[wall]]\nname = {:?}", wall.name)?;
         writeln!(out, "from = [{:.2}, {:.2}]", wall.from.x, wall.from.y)?;
         writeln!(out, "to = [{:.2}, {:.2}]", wall.to.x, wall.to.y)?;
-        writeln!(out, "doors = [{}]\nsurface = {:?}", doors.join(", "), faced(wall.surface))?;
+        writeln!(
+            out,
+            "doors = [{}]\nsurface = {:?}",
+            doors.join(", "),
+            faced(wall.surface)
+        )?;
     }
     for (i, piece) in plan.pieces.iter().enumerate() {
-        writeln!(out, "\n[[block]]\nname = \"{} {}\"\nkind = {:?}", piece.kind, i + 1, piece.kind)?;
+        writeln!(
+            out,
+            "\n[[block]]\nname = \"{} {}\"\nkind = {:?}",
+            piece.kind,
+            i + 1,
+            piece.kind
+        )?;
         writeln!(out, "at = [{:.2}, {:.2}]", piece.at.x, piece.at.y)?;
         writeln!(out, "size = [{:.2}, {:.2}]", piece.size.0, piece.size.1)?;
-        writeln!(out, "turned = {:.1}\nsurface = {:?}", piece.turned, faced(piece.surface))?;
+        writeln!(
+            out,
+            "turned = {:.1}\nsurface = {:?}",
+            piece.turned,
+            faced(piece.surface)
+        )?;
     }
     for (i, leaf) in plan.leaves.iter().enumerate() {
         writeln!(out, "\n[[leaf]]\nname = \"door {}\"", i + 1)?;
-        writeln!(out, "at = [{:.2}, {:.2}]\nwidth = {:.2}", leaf.at.x, leaf.at.y, leaf.width)?;
+        writeln!(
+            out,
+            "at = [{:.2}, {:.2}]\nwidth = {:.2}",
+            leaf.at.x, leaf.at.y, leaf.width
+        )?;
         writeln!(out, "turned = {:.1}", if leaf.upright { 90.0 } else { 0.0 })?;
     }
     for (i, (at, goal)) in plan.places.iter().enumerate() {
@@ -53,7 +73,10 @@ fn fill(out: &mut String, seed: u64, plan: &Plan) -> std::fmt::Result {
     for room in plan.rooms.iter().chain(&plan.corridors) {
         let (west, south, east, north) = room.rect;
         writeln!(out, "\n[[room]]\nname = {:?}", room.name)?;
-        writeln!(out, "from = [{west:.2}, {south:.2}]\nto = [{east:.2}, {north:.2}]")?;
+        writeln!(
+            out,
+            "from = [{west:.2}, {south:.2}]\nto = [{east:.2}, {north:.2}]"
+        )?;
     }
     Ok(())
 }

@@ -28,7 +28,12 @@ static DECLARATION: Declaration = Declaration {
         Port::new("start", Kind::Pulse, "measure from here"),
         Port::new("pose", Kind::Pose, "where the wheels think they are"),
     ],
-    outputs: &[Port::new("travelled", Kind::Vector, "the way since the start, by the compass").unit("m")],
+    outputs: &[Port::new(
+        "travelled",
+        Kind::Vector,
+        "the way since the start, by the compass",
+    )
+    .unit("m")],
     parameters: &[Parameter {
         name: "every",
         takes: Takes::Span {
@@ -64,7 +69,10 @@ impl Module for Integrate {
         let Some(pose) = beat.latest(POSE) else { return };
         let now = beat.now();
         if beat.arrived(START).is_some() {
-            self.state = State::Integrating { from: pose, next: now };
+            self.state = State::Integrating {
+                from: pose,
+                next: now,
+            };
         }
         if let State::Integrating { from, next } = self.state
             && now >= next

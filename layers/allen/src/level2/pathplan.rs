@@ -39,14 +39,27 @@ static DECLARATION: Declaration = Declaration {
     diagram: "Idle --path/start--> Pursuing --travelled/heading of the difference--> Pursuing \
               --near/reached, or no headway/given_up--> Idle",
     inputs: &[
-        Port::new("path", Kind::Polar, "how far, m, and which way, in the robot's frame"),
-        Port::new("travelled", Kind::Vector, "the way since the start, by the compass").unit("m"),
+        Port::new(
+            "path",
+            Kind::Polar,
+            "how far, m, and which way, in the robot's frame",
+        ),
+        Port::new(
+            "travelled",
+            Kind::Vector,
+            "the way since the start, by the compass",
+        )
+        .unit("m"),
         Port::new("compass", Kind::Number, "which way the robot faces").unit("rad"),
     ],
     outputs: &[
         Port::new("heading", Kind::Number, "where to go, by the compass").unit("rad"),
         Port::new("start", Kind::Pulse, "a place was chosen: measure from here"),
-        Port::new("pursuing", Kind::Bit, "whether a place is being made for, every report"),
+        Port::new(
+            "pursuing",
+            Kind::Bit,
+            "whether a place is being made for, every report",
+        ),
         Port::new("reached", Kind::Pulse, "the robot is there"),
         Port::new("given_up", Kind::Pulse, "there was no getting nearer"),
     ],

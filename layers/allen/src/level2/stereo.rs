@@ -42,7 +42,12 @@ static DECLARATION: Declaration = Declaration {
     )],
     parameters: &[
         number("pictures", 3.0, "1", "how many pictures make a look"),
-        number("half_width", 0.48, "m", "what must be free on either side of a way"),
+        number(
+            "half_width",
+            0.48,
+            "m",
+            "what must be free on either side of a way",
+        ),
         number("short", 0.8, "m", "how far before what ends a way to stop"),
         number("least", 1.5, "m", "ways shorter than this lead nowhere"),
         number("most", 6.0, "m", "farther than this stereo is not to be trusted"),

@@ -44,8 +44,16 @@ static DECLARATION: Declaration = Declaration {
     ],
     parameters: &[
         span("rest", 700, "how long nothing may have moved"),
-        span("looking", 1300, "how long a look takes: three pictures, and the way to pathplan"),
-        span("again", 3000, "how long after a look that found nothing before the next one"),
+        span(
+            "looking",
+            1300,
+            "how long a look takes: three pictures, and the way to pathplan",
+        ),
+        span(
+            "again",
+            3000,
+            "how long after a look that found nothing before the next one",
+        ),
     ],
 };
 
