@@ -14,6 +14,7 @@ pub mod diagnostic;
 pub mod directory;
 pub mod document;
 mod read;
+pub mod sketch;
 
 pub use catalog::{Catalog, Declaration, Parameter, Port, Setting, Takes};
 pub use creature::{BODY, Creature, PortName};
