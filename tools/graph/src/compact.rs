@@ -5,6 +5,7 @@
 
 use std::collections::HashMap;
 
+use crate::drawing::RADIUS;
 use crate::maze::Point;
 use crate::measure::width;
 use crate::model::{Model, Node, Port};
@@ -25,6 +26,8 @@ pub(crate) const HEAD: f64 = 32.0;
 pub(crate) const FOOT: f64 = 11.0;
 /// Half the height of a sensor or an actuator.
 pub(crate) const PILL: f64 = 11.0;
+/// From the left edge of a reset line's circle, with some room, to the box.
+pub(crate) const RESET: f64 = 2.0 * RADIUS + 8.0;
 /// Half the room of a line.
 pub(crate) const LANE: f64 = 6.0;
 

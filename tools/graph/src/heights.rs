@@ -5,7 +5,7 @@
 use std::collections::HashMap;
 
 use crate::compact::{
-    CONSTANT, FOOT, HEAD, LABEL, LANE, Lengths, PILL, Slot, box_width, constant, each_port,
+    CONSTANT, FOOT, HEAD, LABEL, LANE, Lengths, PILL, RESET, Slot, box_width, constant, each_port,
 };
 use crate::drawing::RADIUS;
 use crate::measure::width;
@@ -60,11 +60,9 @@ pub(crate) fn from_top_to_bottom(
         for &p in &path.points {
             let var = covering(&level, path.net, p.1, p.0).unwrap_or_else(|| {
                 // A tap that comes from above ends on the line of the port it taps.
-                slots
-                    .get(&(Slot::Row as usize, p.1))
-                    .or_else(|| slots.get(&(Slot::Actuator as usize, p.1)))
-                    .copied()
-                    .expect("every corner lies on a level piece or a port's line")
+                let end = path.end.map(|end| model.nets[path.net].ends[end].node);
+                let slot = Slot::of(&model.nodes[end.expect("only a way to a tap ends so")]);
+                slots[&(slot as usize, p.1)]
             });
             ends.insert((path.net, p), var);
         }
@@ -171,9 +169,9 @@ fn signs(
                 add(at, at + RADIUS + written, 22.0, 0.0);
                 owner = at + RADIUS + 2.0 + written;
             }
-            if let Some(x) = place.reset {
-                let at = lengths.circle((x, place.y));
-                add(at - RADIUS, at + RADIUS, RADIUS + 4.0, RADIUS + 4.0);
+            if place.reset {
+                let edge = lengths.columns[columns[node]].0;
+                add(edge - RESET, edge, RADIUS + 4.0, RADIUS + 4.0);
             }
             if outputs && n.band().is_some() {
                 add(owner, owner + width(&port.name, LABEL) + 8.0, 15.0, 0.0);

@@ -4,14 +4,14 @@
 
 use ipc::wiring::creature::How;
 
-use crate::compact::{FOOT, HEAD, Lengths, NAME, PILL, Slot, box_width, constant, measure};
+use crate::compact::{FOOT, HEAD, Lengths, NAME, PILL, Slot, box_width, constant, each_port, measure};
 use crate::drawing::{Circle, Drawing, Frame, Line, RADIUS, Shape, Strip, Wire};
 use crate::maze::Goal;
 use crate::measure::width;
 use crate::model::{Model, Node, Role};
 use crate::pieces::{Path, paths};
 use crate::place::{Places, place};
-use crate::route::{Branch, goal, route};
+use crate::route::{goal, route};
 use crate::{compact, order, rank};
 
 /// Tracks in each channel beside those that it probably needs; more when a wire finds no way.
@@ -46,14 +46,13 @@ pub fn draw(model: &Model) -> Drawing {
     });
     let paths = paths(&model, &places, &branches);
     let lengths = measure(&model, &columns, &places, &paths);
-    compose(&model, &columns, &places, &branches, &paths, &lengths)
+    compose(&model, &columns, &places, &paths, &lengths)
 }
 
 fn compose(
     model: &Model,
     columns: &[usize],
     places: &Places,
-    branches: &[Vec<Branch>],
     paths: &[Path],
     lengths: &Lengths,
 ) -> Drawing {
@@ -100,8 +99,8 @@ fn compose(
         let (x, y) = lengths.at(net, p);
         ((x + dx).round(), (y + dy).round())
     };
-    wires(model, places, branches, paths, &at, &mut drawing);
-    circles(model, places, lengths, (dx, dy), &mut drawing);
+    wires(model, paths, &at, &mut drawing);
+    circles(model, columns, places, lengths, (dx, dy), &mut drawing);
     drawing
 }
 
@@ -145,15 +144,12 @@ fn frame(
 
 fn wires(
     model: &Model,
-    places: &Places,
-    branches: &[Vec<Branch>],
     paths: &[Path],
     at: &dyn Fn(usize, crate::maze::Point) -> (f64, f64),
     drawing: &mut Drawing,
 ) {
     for (net, n) in model.nets.iter().enumerate() {
         let (node, port) = n.from;
-        let place = &places.outputs[node][port];
         let mine: Vec<&Path> = paths.iter().filter(|p| p.net == net).collect();
         let label = model.nodes[node].band().map(|_| {
             let start = at(net, mine[0].points[0]);
@@ -172,7 +168,6 @@ fn wires(
             }
         };
         let joints = mine.iter().filter(|p| p.joint).map(|p| at(net, p.points[0]));
-        let _ = (place, &branches[net]);
         drawing.wires.push(Wire {
             name: n.name.clone(),
             label,
@@ -185,7 +180,14 @@ fn wires(
     }
 }
 
-fn circles(model: &Model, places: &Places, lengths: &Lengths, (dx, dy): (f64, f64), drawing: &mut Drawing) {
+fn circles(
+    model: &Model,
+    columns: &[usize],
+    places: &Places,
+    lengths: &Lengths,
+    (dx, dy): (f64, f64),
+    drawing: &mut Drawing,
+) {
     for (net, n) in model.nets.iter().enumerate() {
         for (k, end) in n.ends.iter().enumerate() {
             let Some(tap) = end.tap else { continue };
@@ -210,13 +212,9 @@ fn circles(model: &Model, places: &Places, lengths: &Lengths, (dx, dy): (f64, f6
             }
         }
     }
-    for (n, inputs) in model.nodes.iter().zip(&places.inputs) {
-        for place in inputs {
-            if let Some(x) = place.reset {
-                let y = lengths.slot(Slot::of(n), place.y);
-                let x = lengths.circle((x, place.y));
-                drawing.resets.push(((x + dx).round(), (y + dy).round()));
-            }
-        }
+    for (node, _, place) in each_port(model, places, false).filter(|p| p.2.reset) {
+        let y = lengths.slot(Slot::of(&model.nodes[node]), place.y);
+        let x = lengths.columns[columns[node]].0 - RADIUS - 8.0;
+        drawing.resets.push(((x + dx).round(), (y + dy).round()));
     }
 }

@@ -16,6 +16,8 @@ const CROSSING: u32 = 9;
 const JOINT: u32 = 3;
 /// What passing an empty place of a column costs.
 const COLUMN: u32 = 6;
+/// What running along the line of somebody else's port costs: it should be left to that port.
+const HALO: u32 = 2;
 /// A tap comes from above where it can.
 const FROM_BELOW: u32 = 12;
 
@@ -35,6 +37,8 @@ pub(crate) struct Maze {
     across: Vec<u32>,
     down: Vec<u32>,
     whole: Vec<u32>,
+    /// Who should be left alone on a level line.
+    halo: Vec<u32>,
     cost: Vec<u32>,
     came: Vec<u8>,
     touched: Vec<usize>,
@@ -76,6 +80,7 @@ impl Maze {
             across: vec![FREE; points],
             down: vec![FREE; points],
             whole: vec![FREE; points],
+            halo: vec![FREE; points],
             cost: vec![u32::MAX; points * 4],
             came: vec![0; points * 4],
             touched: Vec::new(),
@@ -102,6 +107,12 @@ impl Maze {
     pub(crate) fn pass(&mut self, p: Point, owner: u32) {
         let at = self.at(p);
         self.across[at] = owner;
+    }
+
+    /// Asks others not to run along there.
+    pub(crate) fn shade(&mut self, p: Point, owner: u32) {
+        let at = self.at(p);
+        self.halo[at] = owner;
     }
 
     /// Enters or removes a way, a list of points one step apart, but for its last point and for `start`.
@@ -146,9 +157,11 @@ impl Maze {
         } else {
             (self.down[at], self.across[at])
         };
+        let foreign = d.is_multiple_of(2) && self.halo[at] != FREE && self.halo[at] != owner;
+        let shaded = if foreign { HALO } else { 0 };
         match (same, other) {
-            (FREE, FREE) => Some(0),
-            (FREE, other) if other != owner => Some(CROSSING),
+            (FREE, FREE) => Some(shaded),
+            (FREE, other) if other != owner => Some(CROSSING + shaded),
             _ => None,
         }
     }

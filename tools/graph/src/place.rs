@@ -27,8 +27,8 @@ pub(crate) struct Place {
     pub(crate) edge: usize,
     /// The vertical line of each of its taps' circles, in the order of its taps.
     pub(crate) circles: Vec<usize>,
-    /// Where the circle of a reset line stands.
-    pub(crate) reset: Option<usize>,
+    /// Whether it is a reset line, which has a circle right before the box.
+    pub(crate) reset: bool,
     /// Where free routing begins.
     pub(crate) terminal: usize,
 }
@@ -127,7 +127,7 @@ fn across(model: &Model, columns: &[usize], tracks: usize, places: &mut Places) 
         places.right[column] = x;
         x += zone(model, columns, column, true) + tracks;
     }
-    places.width = places.left[last] + 1;
+    places.width = places.right[last] + 1;
 }
 
 /// Lines that circles and labels beside a column need.
@@ -168,42 +168,48 @@ fn down(slots: &[Slots], order: &Order, tracks: usize, places: &mut Places) -> V
     rows
 }
 
-/// Sensors and actuators stand beside what they are wired to first, each on a line of its own.
+/// Sensors and actuators stand beside what they are wired to first, each on a line of its own; those with the
+/// shortest way choose first.
 fn body_ends(model: &Model, places: &mut Places) {
-    let mut taken: [Vec<usize>; 2] = [Vec::new(), Vec::new()];
+    let mut wishes: Vec<(usize, usize, usize)> = Vec::new();
     for (node, n) in model.nodes.iter().enumerate() {
-        let wanted = match n.role {
+        let nearest = match n.role {
             Role::Module(_) => continue,
             Role::Sensor => {
                 let nets = n.outputs.iter().filter_map(|p| p.net);
                 let ends = nets.flat_map(|net| &model.nets[net].ends);
                 let near = ends.filter(|e| model.nodes[e.node].band().is_some() && !inhibits(e));
                 near.map(|e| &places.inputs[e.node][e.port])
-                    .min_by_key(|p| (p.edge, p.y))
-                    .map(|p| p.y)
+                    .map(|p| (p.edge, p.y))
+                    .min()
             }
             Role::Actuator => {
                 let nets = n.inputs.iter().filter_map(|p| p.net);
-                let from = nets.map(|net| model.nets[net].from);
                 let taps = n.inputs.iter().flat_map(|p| &p.taps);
-                let from = from.chain(taps.map(|&(net, _)| model.nets[net].from));
+                let from = nets
+                    .chain(taps.map(|&(net, _)| net))
+                    .map(|net| model.nets[net].from);
                 from.filter(|f| model.nodes[f.0].band().is_some())
                     .map(|(node, port)| &places.outputs[node][port])
-                    .max_by_key(|p| (p.edge, p.y))
-                    .map(|p| p.y)
+                    .map(|p| (places.width - p.edge, p.y))
+                    .min()
             }
         };
-        let wanted = wanted.unwrap_or(places.height / 2);
+        let (way, y) = nearest.unwrap_or((places.width, places.height / 2));
+        wishes.push((way, y, node));
+    }
+    wishes.sort_unstable();
+    let mut taken: [Vec<usize>; 2] = [Vec::new(), Vec::new()];
+    for (_, wanted, node) in wishes {
+        let n = &model.nodes[node];
         let taken = &mut taken[usize::from(n.role == Role::Actuator)];
         let extra = SLOT * n.inputs.len().max(n.outputs.len()).saturating_sub(1);
-        let height = places.height + 4 * model.nodes.len();
-        let free = |y: &usize| taken.iter().all(|t| t.abs_diff(*y) > SLOT + extra);
-        let near = (0..height).flat_map(|d| [wanted.saturating_sub(d), wanted + d]);
-        let y = near.into_iter().find(free).unwrap_or(wanted);
+        let free = |y: &usize| taken.iter().all(|t| *t >= y + extra + SLOT || *y >= t + SLOT);
+        let reach = places.height + SLOT * 4 * model.nodes.len();
+        let near = (0..reach).flat_map(|d| [wanted + d, wanted.saturating_sub(d)]);
+        let y = near.into_iter().find(free).unwrap_or(wanted).max(1);
         places.height = places.height.max(y + extra + 2);
-        for k in 0..=extra / SLOT {
-            taken.push(y + SLOT * k);
-        }
+        taken.extend((0..=extra / SLOT).map(|k| y + SLOT * k));
         places.span[node] = (y, y + extra);
         for (k, p) in places.inputs[node].iter_mut().enumerate() {
             p.y = y + SLOT * k;
@@ -227,7 +233,7 @@ fn stubs(model: &Model, places: &mut Places) {
         for (port, place) in n.inputs.iter().zip(&mut places.inputs[node]) {
             let mut x = place.edge - 1;
             if port.name == "reset" && n.band().is_some() {
-                place.reset = Some(place.edge - 2);
+                place.reset = true;
                 x = place.edge - 3;
             }
             // The tap that stands last in series is nearest to the module.

@@ -21,6 +21,9 @@ const TRIES_MAX: usize = 12;
 /// How often each net is found again while the others stay.
 const ROUNDS: usize = 3;
 
+/// How many lines before an input and behind an output others are asked to leave alone.
+const HALO: usize = 6;
+
 /// The branches of every net, or the number of nets that found no way.
 pub(crate) fn route(model: &Model, columns: &[usize], places: &Places) -> Result<Vec<Vec<Branch>>, usize> {
     let mut order: Vec<usize> = (0..model.nets.len()).collect();
@@ -194,9 +197,8 @@ fn enclose(model: &Model, columns: &[usize], places: &Places) -> Maze {
             let owner = port.net.map_or(stranger, |net| net as u32);
             (place.terminal + 1..place.edge).for_each(|x| maze.pass((x, place.y), owner));
             maze.give((place.terminal, place.y), owner);
-            if let Some(x) = place.reset {
-                maze.give((x, place.y), owner);
-            }
+            let near = place.terminal.saturating_sub(HALO);
+            (near..place.terminal).for_each(|x| maze.shade((x, place.y), owner));
             circles(&mut maze, place, owner);
         }
         for (port, place) in n.outputs.iter().zip(&places.outputs[node]) {
@@ -204,6 +206,8 @@ fn enclose(model: &Model, columns: &[usize], places: &Places) -> Maze {
             let owner = port.net.map_or(stranger, |net| net as u32);
             (place.edge + 1..place.terminal).for_each(|x| maze.pass((x, place.y), owner));
             maze.give((place.terminal, place.y), owner);
+            let near = (place.terminal + 1 + HALO).min(places.width);
+            (place.terminal + 1..near).for_each(|x| maze.shade((x, place.y), owner));
             if n.band().is_some() {
                 (place.terminal - 2..place.terminal).for_each(|x| maze.block((x, place.y - 1)));
             }

@@ -4,7 +4,7 @@
 
 use std::collections::HashMap;
 
-use crate::compact::{CONSTANT, LABEL, LANE, Lengths, box_width, constant, each_port};
+use crate::compact::{CONSTANT, LABEL, LANE, Lengths, RESET, box_width, constant, each_port};
 use crate::drawing::RADIUS;
 use crate::maze::Point;
 use crate::measure::width;
@@ -58,8 +58,8 @@ pub(crate) fn from_left_to_right(
     for path in paths {
         for &p in &path.points {
             let here = covering(&upright, path.net, p.0, p.1).or_else(|| {
-                let left = places.left.iter().position(|&l| l == p.0).map(|c| edges[c].0);
-                left.or_else(|| places.right.iter().position(|&r| r == p.0).map(|c| edges[c].1))
+                let right = places.right.iter().position(|&r| r == p.0).map(|c| edges[c].1);
+                right.or_else(|| places.left.iter().position(|&l| l == p.0).map(|c| edges[c].0))
             });
             let var = here.unwrap_or_else(|| {
                 let var = d.line(4 * p.0 + 2);
@@ -121,17 +121,14 @@ fn signs(
                 });
                 circles.insert((x, place.y), var);
             }
-            if let Some(x) = place.reset {
-                let var = d.line(4 * x + 2);
-                d.apart(var, edges[column].0, RADIUS + 6.0);
+            if place.reset {
                 items.push(Item {
-                    var,
+                    var: edges[column].0,
                     from: place.y as f64,
                     to: place.y as f64,
-                    before: RADIUS + 1.0,
-                    behind: RADIUS,
+                    before: RESET,
+                    behind: 0.0,
                 });
-                circles.insert((x, place.y), var);
             }
         }
     }
