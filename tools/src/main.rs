@@ -2,6 +2,7 @@
 
 mod check;
 mod live;
+mod picture;
 mod watch;
 
 use std::path::PathBuf;
@@ -20,7 +21,8 @@ use ipc::control::Request;
     subsumectl watch turn.heading         messages of a wire as they come\n  \
     subsumectl halt; subsumectl reset     emergency stop, and its end\n  \
     subsumectl --creature jerry status    another instance\n  \
-    subsumectl check mine.toml            every error of a creature file\n\n\
+    subsumectl check mine.toml            every error of a creature file\n  \
+    subsumectl graph mine.toml -o x.svg   a picture of it\n\n\
     Status: 0 done; 1 not done (no daemon, refused); 2 bad input."
 )]
 struct Options {
@@ -67,6 +69,21 @@ enum Command {
     Truckin(truckin::command::TruckinArgs),
     /// ADROIT: check, draw, run and change programs of releasing mechanisms
     Adroit(adroit::command::AdroitArgs),
+    /// Draws a creature: layers stacked, wires, taps with their time constants; what is wrong in red
+    Graph {
+        /// The creature file, and manifests of layers that join it
+        #[arg(required = true, value_name = "FILE")]
+        files: Vec<PathBuf>,
+        /// More manifests of layers that join it
+        #[arg(long, num_args = 1.., value_name = "MANIFEST")]
+        layers: Vec<PathBuf>,
+        /// Graphviz text instead of SVG
+        #[arg(long)]
+        dot: bool,
+        /// Where to write; the terminal if not given
+        #[arg(short, long, value_name = "OUT")]
+        output: Option<PathBuf>,
+    },
     /// Lists the kinds of module, or explains one
     Modules {
         /// A kind of module
@@ -95,6 +112,15 @@ fn main() -> ExitCode {
         Command::Check { files } => return check::check(&files, json),
         Command::Truckin(args) => return truckin::command::command(args),
         Command::Adroit(args) => return adroit::command::command(args),
+        Command::Graph {
+            mut files,
+            layers,
+            dot,
+            output,
+        } => {
+            files.extend(layers);
+            return picture::draw(&files, dot, output.as_deref(), json);
+        }
         Command::Modules { name } => return check::modules(name.as_deref(), json),
     };
     match done {

@@ -55,7 +55,8 @@ pub(crate) fn paths(model: &Model, places: &Places, branches: &[Vec<Branch>]) ->
     let mut stranger = model.nets.len();
     for (n, inputs) in model.nodes.iter().zip(&places.inputs) {
         for (_, place) in n.inputs.iter().zip(inputs).filter(|(p, _)| p.net.is_none()) {
-            let points = vec![(place.terminal, place.y), (place.edge, place.y)];
+            let start = place.circles.first().copied().unwrap_or(place.terminal);
+            let points = vec![(start, place.y), (place.edge, place.y)];
             paths.push(Path {
                 net: stranger,
                 end: None,

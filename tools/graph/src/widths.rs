@@ -61,6 +61,7 @@ pub(crate) fn from_left_to_right(
                 let right = places.right.iter().position(|&r| r == p.0).map(|c| edges[c].1);
                 right.or_else(|| places.left.iter().position(|&l| l == p.0).map(|c| edges[c].0))
             });
+            let here = here.or_else(|| circles.get(&p).copied());
             let var = here.unwrap_or_else(|| {
                 let var = d.line(4 * p.0 + 2);
                 let next = places.left.partition_point(|&l| l <= p.0).min(edges.len() - 1);

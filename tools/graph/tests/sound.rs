@@ -71,7 +71,8 @@ fn wrongs(model: &Model, drawing: &Drawing) -> Vec<String> {
                 let (h, v) = if level(a) { (a, b) } else { (b, a) };
                 let inner = |x: f64, p: f64, q: f64| p.min(q) + 5.0 <= x && x <= p.max(q) - 5.0;
                 let meets = share((h.1.0, h.2.0), (v.1.0, v.1.0), -3.0) && share((v.1.1, v.2.1), (h.1.1, h.1.1), -3.0);
-                if meets && !(inner(v.1.0, h.1.0, h.2.0) && inner(h.1.1, v.1.1, v.2.1)) {
+                let tapped = |t: &graph::Circle| (t.at.0 - v.1.0).abs() < 1.0 && (t.at.1 - h.1.1).abs() < 1.0;
+                if meets && !drawing.taps.iter().any(tapped) && !(inner(v.1.0, h.1.0, h.2.0) && inner(h.1.1, v.1.1, v.2.1)) {
                     wrong.push(format!("{a:?} and {b:?} meet where one of them ends"));
                 }
             }
