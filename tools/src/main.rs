@@ -3,6 +3,7 @@
 mod check;
 mod live;
 mod picture;
+mod test;
 mod watch;
 
 use std::path::PathBuf;
@@ -22,8 +23,9 @@ use ipc::control::Request;
     subsumectl halt; subsumectl reset     emergency stop, and its end\n  \
     subsumectl --creature jerry status    another instance\n  \
     subsumectl check mine.toml            every error of a creature file\n  \
-    subsumectl graph mine.toml -o x.svg   a picture of it\n\n\
-    Status: 0 done; 1 not done (no daemon, refused); 2 bad input."
+    subsumectl graph mine.toml -o x.svg   a picture of it\n  \
+    subsumectl test scenarios/            what must come of a creature, on the virtual clock\n\n\
+    Status: 0 done; 1 not done (no daemon, refused, an expectation not met); 2 bad input."
 )]
 struct Options {
     /// The running creature to speak to
@@ -84,6 +86,21 @@ enum Command {
         #[arg(short, long, value_name = "OUT")]
         output: Option<PathBuf>,
     },
+    /// Runs scenario files on the virtual clock
+    Test {
+        /// Scenario files, and folders of them
+        #[arg(required = true, value_name = "FILE-or-FOLDER")]
+        paths: Vec<PathBuf>,
+        /// Only scenarios with this in their path or title
+        #[arg(long, value_name = "TEXT")]
+        filter: Option<String>,
+        /// Steps the modules of a layer in another order each beat, by this seed
+        #[arg(long, value_name = "SEED")]
+        shuffle: Option<u64>,
+        /// Writes a report for continuous integration as well
+        #[arg(long, value_name = "FILE")]
+        junit: Option<PathBuf>,
+    },
     /// Lists the kinds of module, or explains one
     Modules {
         /// A kind of module
@@ -120,6 +137,20 @@ fn main() -> ExitCode {
         } => {
             files.extend(layers);
             return picture::draw(&files, dot, output.as_deref(), json);
+        }
+        Command::Test {
+            paths,
+            filter,
+            shuffle,
+            junit,
+        } => {
+            return test::test(&test::Wanted {
+                paths: &paths,
+                filter: filter.as_deref(),
+                shuffle,
+                junit: junit.as_deref(),
+                json,
+            });
         }
         Command::Modules { name } => return check::modules(name.as_deref(), json),
     };

@@ -34,7 +34,9 @@ pub(crate) fn draw(files: &[PathBuf], as_dot: bool, output: Option<&Path>, as_js
         .map(|l| json!(l))
         .collect();
     let written = match output {
-        Some(path) => std::fs::write(path, &text).map_err(|e| format!("{}: cannot be written: {e}", path.display())),
+        Some(path) => {
+            std::fs::write(path, &text).map_err(|e| format!("{}: cannot be written: {e}", path.display()))
+        }
         None if as_json => Ok(()),
         None => std::io::stdout()
             .write_all(text.as_bytes())
@@ -140,7 +142,12 @@ fn describe(model: &Model, as_dot: bool, output: Option<&Path>, text: &str, erro
         .nets
         .iter()
         .map(|n| {
-            let to: Vec<&str> = n.ends.iter().filter(|e| e.tap.is_none()).map(|e| e.to.as_str()).collect();
+            let to: Vec<&str> = n
+                .ends
+                .iter()
+                .filter(|e| e.tap.is_none())
+                .map(|e| e.to.as_str())
+                .collect();
             json!({"from": n.name, "to": to})
         })
         .collect();

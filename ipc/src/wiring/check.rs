@@ -39,12 +39,65 @@ fn check(source: &Source, catalog: &dyn Catalog, host: Option<&Directory>) -> Re
     if !findings.is_clean() {
         return findings.into_result(source, None);
     }
-    let parts = read::read(&root, &mut findings);
+    let keys = Keys::new(root.get_ref(), 0..0, "the creature file");
+    check_part(keys, None, findings, source, catalog, host)
+}
+
+/// Checks a creature (or, with a `host`, a layer's manifest) that stands in a table of another document: the
+/// one that `path` leads to. It need not say its name; then it is `name`.
+///
+/// # Errors
+/// Every error of that table, each with its line and column in the document. Of errors outside the table only
+/// those of syntax are shown.
+pub fn inline(
+    source: &Source,
+    path: &[&str],
+    name: &str,
+    catalog: &dyn Catalog,
+    host: Option<&Directory>,
+) -> Result<Creature, Rejected> {
+    let mut findings = Findings::default();
+    let root = doc::parse(source, &mut findings).filter(|_| findings.is_clean());
+    let Some(root) = root else {
+        return findings.into_result(source, None);
+    };
+    let what = format!("[{}]", path.join("."));
+    let mut keys = Keys::new(root.get_ref(), 0..0, what.clone());
+    for step in path {
+        let Some(value) = keys.get(step) else {
+            findings.error(keys.at(), format!("there is no table {what}"), "add it");
+            return findings.into_result(source, None);
+        };
+        let Some(table) = doc::table(value, what.clone(), &mut findings) else {
+            return findings.into_result(source, None);
+        };
+        keys = table;
+    }
+    check_part(keys, Some(name), findings, source, catalog, host)
+}
+
+fn check_part(
+    keys: Keys<'_, '_>,
+    name: Option<&str>,
+    mut findings: Findings,
+    source: &Source,
+    catalog: &dyn Catalog,
+    host: Option<&Directory>,
+) -> Result<Creature, Rejected> {
+    let at = keys.at();
+    let mut parts = read::read(keys, &mut findings);
+    if let (None, Some(name)) = (&parts.name, name) {
+        parts.name = Some(Placed {
+            value: name.into(),
+            at: at.clone(),
+        });
+    }
     let whole = findings.is_clean();
     let mut checker = Checker {
         findings,
         catalog,
         host,
+        at,
         modules: HashMap::new(),
         writers: HashMap::new(),
         tapped: HashMap::new(),
@@ -65,6 +118,8 @@ struct Checker<'c> {
     findings: Findings,
     catalog: &'c dyn Catalog,
     host: Option<&'c Directory>,
+    /// Where the table that is checked begins.
+    at: Range<usize>,
     modules: HashMap<String, Known>,
     /// Which output feeds each input.
     writers: HashMap<PortName, PortName>,
@@ -95,14 +150,14 @@ impl Checker<'_> {
     fn creature(&mut self, parts: Parts<'_, '_>) -> Option<Creature> {
         if parts.name.is_none() && self.whole {
             self.findings.error(
-                0..0,
+                self.at.clone(),
                 "the creature has no name",
                 "add creature = \"...\" at the top",
             );
         }
         if parts.layers.is_empty() && self.whole {
             self.findings.error(
-                0..0,
+                self.at.clone(),
                 "there is no layer",
                 "add a [[layer]] with name, level and period",
             );
@@ -202,10 +257,15 @@ impl Checker<'_> {
                 Takes::Word { words, .. } => {
                     doc::word(v, parameter.name, words, f).map(|i| Setting::Text(words[i].into()))
                 }
-                Takes::Numbers { .. } => {
-                    let items = doc::array(v, "a list of numbers", f);
-                    let numbers = items.iter().filter_map(|n| doc::number(n, f64::MIN, f64::MAX, f));
+                Takes::Numbers { low, high, most, .. } => {
+                    let items = doc::list(v, "numbers", most, f);
+                    let numbers = items.iter().filter_map(|n| doc::number(n, low, high, f));
                     Some(Setting::Numbers(numbers.collect()))
+                }
+                Takes::Spans { most, .. } => {
+                    let items = doc::list(v, "times such as [\"20ms\"]", most, f);
+                    let spans = items.iter().filter_map(|s| doc::span(s, false, f));
+                    Some(Setting::Spans(spans.collect()))
                 }
             });
             settings.push(read.or(parameter.takes.default()).unwrap_or(Setting::Bit(false)));

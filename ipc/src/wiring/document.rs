@@ -5,8 +5,8 @@
 use std::borrow::Cow;
 use std::ops::Range;
 
-use toml::Spanned;
-use toml::de::{DeTable, DeValue};
+pub use toml::Spanned;
+pub use toml::de::{DeTable, DeValue};
 
 use super::diagnostic::{Findings, Source, one_of};
 use crate::clock::Span;
@@ -72,6 +72,25 @@ impl<'t, 's> Keys<'t, 's> {
     /// Whether `key` is given.
     pub fn has(&self, key: &str) -> bool {
         self.table.iter().any(|(k, _)| k.get_ref() == key)
+    }
+
+    /// The value of `key`, which then still is not asked for.
+    pub fn get(&self, key: &str) -> Option<&'t Spanned<DeValue<'s>>> {
+        self.table
+            .iter()
+            .find(|(k, _)| k.get_ref() == key)
+            .map(|(_, v)| v)
+    }
+
+    /// Every key with its place and value, in the order of the file; all of them count as asked for.
+    pub fn all(self) -> impl Iterator<Item = (Placed<String>, &'t Spanned<DeValue<'s>>)> {
+        self.table.iter().map(|(key, value)| {
+            let placed = Placed {
+                value: key.get_ref().to_string(),
+                at: key.span(),
+            };
+            (placed, value)
+        })
     }
 
     /// The value of `key`.
@@ -245,6 +264,21 @@ pub fn array<'t, 's>(
             Vec::new()
         }
     }
+}
+
+/// The elements of a list of at most `most` of `what`.
+pub fn list<'t, 's>(
+    value: &'t Spanned<DeValue<'s>>,
+    what: &str,
+    most: usize,
+    findings: &mut Findings,
+) -> Vec<&'t Spanned<DeValue<'s>>> {
+    let items = array(value, &format!("a list of {what}"), findings);
+    if items.len() > most {
+        let message = format!("the list has {} elements", items.len());
+        findings.error(value.span(), message, format!("expected at most {most}"));
+    }
+    items
 }
 
 /// A table.

@@ -3,7 +3,7 @@
 //! Must never compare two parts with each other: that is the checker's work.
 
 use toml::Spanned;
-use toml::de::{DeTable, DeValue};
+use toml::de::DeValue;
 
 use super::creature::{How, Overrun, PortName};
 use super::diagnostic::Findings;
@@ -59,9 +59,8 @@ pub(super) struct RawTap {
     pub(super) time_constant: Span,
 }
 
-pub(super) fn read<'t, 's>(root: &'t Spanned<DeTable<'s>>, findings: &mut Findings) -> Parts<'t, 's> {
+pub(super) fn read<'t, 's>(mut keys: Keys<'t, 's>, findings: &mut Findings) -> Parts<'t, 's> {
     let mut parts = Parts::default();
-    let mut keys = Keys::new(root.get_ref(), 0..0, "the creature file");
     parts.name = keys
         .take("creature")
         .and_then(|v| name(v, "a name for the creature", findings));

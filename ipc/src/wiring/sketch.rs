@@ -77,7 +77,9 @@ pub fn sketch(source: &Source, rejected: Option<&Rejected>) -> Sketch {
     for (diagnostic, placed) in diagnostics.iter().zip(marker.placed) {
         if !placed {
             let (line, _) = source.place(diagnostic.at.start);
-            sketch.faults.push(format!("{}:{line}: {}", source.name, say(diagnostic)));
+            sketch
+                .faults
+                .push(format!("{}:{line}: {}", source.name, say(diagnostic)));
         }
     }
     sketch

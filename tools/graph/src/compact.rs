@@ -128,8 +128,16 @@ pub(crate) fn each_port<'m>(
     outputs: bool,
 ) -> impl Iterator<Item = (usize, &'m Port, &'m Place)> {
     let of = if outputs { &places.outputs } else { &places.inputs };
-    model.nodes.iter().zip(of).enumerate().flat_map(move |(node, (n, places))| {
-        let ports = if outputs { &n.outputs } else { &n.inputs };
-        ports.iter().zip(places).map(move |(port, place)| (node, port, place))
-    })
+    model
+        .nodes
+        .iter()
+        .zip(of)
+        .enumerate()
+        .flat_map(move |(node, (n, places))| {
+            let ports = if outputs { &n.outputs } else { &n.inputs };
+            ports
+                .iter()
+                .zip(places)
+                .map(move |(port, place)| (node, port, place))
+        })
 }

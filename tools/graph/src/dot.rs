@@ -13,10 +13,17 @@ use crate::model::{Model, Port, Role};
 pub fn dot(model: &Model) -> String {
     let mut out = String::new();
     let _ = writeln!(out, "digraph {} {{", quote(&model.name));
-    out.push_str("  rankdir=LR;\n  node [fontname=\"sans-serif\" shape=box];\n  edge [fontname=\"sans-serif\"];\n");
+    out.push_str(
+        "  rankdir=LR;\n  node [fontname=\"sans-serif\" shape=box];\n  edge [fontname=\"sans-serif\"];\n",
+    );
     for (k, band) in model.bands.iter().enumerate().rev() {
         let process = band.process.iter().map(|p| format!(" ({p})"));
-        let label = format!("level {} {}{}", band.level, band.name, process.collect::<String>());
+        let label = format!(
+            "level {} {}{}",
+            band.level,
+            band.name,
+            process.collect::<String>()
+        );
         let _ = writeln!(out, "  subgraph cluster_{k} {{\n    label={};", quote(&label));
         for (node, n) in model.nodes.iter().enumerate() {
             if n.role == Role::Module(k) {
@@ -122,5 +129,11 @@ fn quote(text: &str) -> String {
         .chars()
         .map(|c| if c.is_control() && c != '\n' { ' ' } else { c })
         .collect();
-    format!("\"{}\"", sound.replace('\\', "\\\\").replace('"', "\\\"").replace('\n', "\\n"))
+    format!(
+        "\"{}\"",
+        sound
+            .replace('\\', "\\\\")
+            .replace('"', "\\\"")
+            .replace('\n', "\\n")
+    )
 }

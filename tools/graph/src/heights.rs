@@ -208,7 +208,11 @@ fn bands(
     }
     for (n, &(first, last)) in model.nodes.iter().zip(&places.span) {
         let slot = Slot::of(n);
-        let (head, foot) = if slot == Slot::Row { (HEAD, FOOT) } else { (PILL, PILL) };
+        let (head, foot) = if slot == Slot::Row {
+            (HEAD, FOOT)
+        } else {
+            (PILL, PILL)
+        };
         if let Some(k) = within(first) {
             d.apart(edges[k].0, slots[&(slot as usize, first)], head + EDGE);
         }

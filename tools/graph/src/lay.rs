@@ -49,13 +49,7 @@ pub fn draw(model: &Model) -> Drawing {
     compose(&model, &columns, &places, &paths, &lengths)
 }
 
-fn compose(
-    model: &Model,
-    columns: &[usize],
-    places: &Places,
-    paths: &[Path],
-    lengths: &Lengths,
-) -> Drawing {
+fn compose(model: &Model, columns: &[usize], places: &Places, paths: &[Path], lengths: &Lengths) -> Drawing {
     let widest = |role: Role| {
         let ends = model.nodes.iter().filter(|n| n.role == role);
         ends.map(box_width).fold(0.0, f64::max)
@@ -137,7 +131,9 @@ fn frame(
         top: height(first) - head + if bare { 10.0 } else { 0.0 },
         right: (right + dx).round(),
         bottom: height(last) + foot,
-        inputs: inputs.map(|(p, place)| (p.name.clone(), height(place.y))).collect(),
+        inputs: inputs
+            .map(|(p, place)| (p.name.clone(), height(place.y)))
+            .collect(),
         fault: n.fault.clone(),
     }
 }
@@ -176,7 +172,9 @@ fn wires(
         });
     }
     for p in paths.iter().filter(|p| p.net >= model.nets.len()) {
-        drawing.stubs.push([at(p.net, p.points[0]), at(p.net, p.points[1])]);
+        drawing
+            .stubs
+            .push([at(p.net, p.points[0]), at(p.net, p.points[1])]);
     }
 }
 

@@ -120,8 +120,7 @@ fn cost(lines: &[Line], columns: &[usize], order: &Order, start: &[usize]) -> f6
         let (a, b) = (rows[l.from], rows[l.to]);
         cost += l.weight * a.abs_diff(b) as f64;
         let (left, right) = (columns[l.from], columns[l.to]);
-        let between =
-            |n: usize| rows[n] == a && columns[n] > left.min(right) && columns[n] < left.max(right);
+        let between = |n: usize| rows[n] == a && columns[n] > left.min(right) && columns[n] < left.max(right);
         if a == b && left.abs_diff(right) > 1 && (0..rows.len()).any(between) {
             cost += 2.0;
         }

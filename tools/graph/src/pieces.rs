@@ -130,7 +130,9 @@ pub(crate) fn pieces(paths: &[Path], upright: bool, distances: &mut Distances) -
 /// The line of the piece that covers a point.
 pub(crate) fn covering(pieces: &[Piece], net: usize, line: usize, at: usize) -> Option<usize> {
     let start = pieces.partition_point(|p| (p.net, p.line) < (net, line));
-    let here = pieces[start..].iter().take_while(|p| (p.net, p.line) == (net, line));
+    let here = pieces[start..]
+        .iter()
+        .take_while(|p| (p.net, p.line) == (net, line));
     here.into_iter()
         .find(|p| p.low <= at && at <= p.high)
         .map(|p| p.var)
@@ -161,4 +163,3 @@ pub(crate) fn separate(items: &[Item], distances: &mut Distances) {
         }
     }
 }
-

@@ -76,7 +76,13 @@ impl Slots {
 /// Places everything, with `spare` tracks in each channel beside those that it probably needs.
 pub(crate) fn place(model: &Model, columns: &[usize], order: &Order, spare: usize) -> Places {
     let slots = slots(model, columns, order);
-    let last = columns.iter().max().map_or(1, |c| *c).max(1);
+    // Behind the last module is a column for actuators, also if there are none: wires come out there.
+    let modules = model
+        .nodes
+        .iter()
+        .zip(columns)
+        .filter(|(n, _)| n.band().is_some());
+    let last = modules.map(|(_, c)| *c).max().unwrap_or(0) + 1;
     let ends: usize = model.nets.iter().map(|n| 1 + n.ends.len()).sum();
     let mut places = Places {
         width: 0,
@@ -90,7 +96,12 @@ pub(crate) fn place(model: &Model, columns: &[usize], order: &Order, spare: usiz
     };
     let tracks = spare + (ends / last).min(24);
     across(model, columns, tracks, &mut places);
-    let rows = down(&slots, order, spare + (ends / order.count.max(1)).min(24), &mut places);
+    let rows = down(
+        &slots,
+        order,
+        spare + (ends / order.count.max(1)).min(24),
+        &mut places,
+    );
     for (node, slots) in slots.iter().enumerate() {
         let (low, base) = rows[order.rows[node]];
         let line = |s: &i64| base + SLOT * (s - low) as usize + ABOVE + 1;

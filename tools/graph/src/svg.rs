@@ -45,7 +45,10 @@ text,.head,.joint{fill:#e8e8e8}.paper,.module rect,.end rect,.disc{fill:#16181c}
 /// Writes a drawing as SVG.
 pub fn svg(drawing: &Drawing, dress: Dress) -> String {
     let notes = drawing.faults.len() as f64 * 16.0;
-    let longest = drawing.faults.iter().map(|f| crate::measure::width(f, PORT) + 24.0);
+    let longest = drawing
+        .faults
+        .iter()
+        .map(|f| crate::measure::width(f, PORT) + 24.0);
     let width = longest.fold(drawing.width, f64::max).ceil();
     let height = drawing.height + notes;
     let mut out = String::with_capacity(1 << 14);
@@ -60,7 +63,10 @@ pub fn svg(drawing: &Drawing, dress: Dress) -> String {
     if dress == Dress::File {
         let _ = writeln!(out, "<style>{STYLE}</style>");
     }
-    let _ = writeln!(out, "<rect class=\"paper\" width=\"{width}\" height=\"{height}\"/>");
+    let _ = writeln!(
+        out,
+        "<rect class=\"paper\" width=\"{width}\" height=\"{height}\"/>"
+    );
     for band in &drawing.bands {
         strip(&mut out, band, drawing.width);
     }
@@ -137,7 +143,9 @@ fn escape(text: &str) -> String {
 }
 
 fn strip(out: &mut String, band: &Strip, width: f64) {
-    let Strip { top, bottom, level, .. } = band;
+    let Strip {
+        top, bottom, level, ..
+    } = band;
     let process = band.process.iter().map(|p| {
         format!(
             "<text class=\"process\" x=\"20\" y=\"{}\" font-size=\"{PORT}\">{}</text>",
@@ -206,7 +214,11 @@ fn branch(out: &mut String, b: &Line, from: &str, crossings: &[At]) {
     };
     let words = format!("{from} {verb} {}", b.to);
     let words = if b.to.is_empty() { from } else { &words };
-    let class = if b.tap.is_some() { "branch tapping" } else { "branch" };
+    let class = if b.tap.is_some() {
+        "branch tapping"
+    } else {
+        "branch"
+    };
     let _ = writeln!(
         out,
         "<g class=\"{}\" data-to=\"{}\">{}<path class=\"line\" d=\"{}\"/>{}</g>",

@@ -51,9 +51,17 @@ pub(crate) fn from_left_to_right(
         });
     }
     let mut circles = HashMap::new();
-    signs(model, columns, places, &edges, &upright, &mut d, &mut items, &mut circles);
+    signs(
+        model,
+        columns,
+        places,
+        &edges,
+        &upright,
+        &mut d,
+        &mut items,
+        &mut circles,
+    );
     labels(model, columns, places, &edges, &circles, &mut d, &mut items);
-    separate(&items, &mut d);
     let mut ends = HashMap::new();
     for path in paths {
         for &p in &path.points {
@@ -67,6 +75,14 @@ pub(crate) fn from_left_to_right(
                 let next = places.left.partition_point(|&l| l <= p.0).min(edges.len() - 1);
                 d.apart(var, edges[next].0, 14.0);
                 d.apart(edges[next - 1].1, var, 30.0);
+                // The loose end of an output that nothing hears keeps others away as a wire does.
+                items.push(Item {
+                    var,
+                    from: p.1 as f64,
+                    to: p.1 as f64,
+                    before: LANE,
+                    behind: LANE,
+                });
                 var
             });
             ends.insert((path.net, p), var);
@@ -77,6 +93,7 @@ pub(crate) fn from_left_to_right(
             }
         }
     }
+    separate(&items, &mut d);
     let at = d.solve();
     lengths.columns = edges.iter().map(|&(l, r)| (at[l], at[r])).collect();
     lengths.x = ends.into_iter().map(|(k, var)| (k, at[var])).collect();
@@ -169,4 +186,3 @@ fn labels(
         });
     }
 }
-

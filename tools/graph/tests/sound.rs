@@ -16,7 +16,13 @@ fn pieces(drawing: &Drawing) -> Vec<Piece> {
         .flat_map(|(net, points)| points.windows(2).map(move |p| (net, p[0], p[1])))
         .collect();
     let count = drawing.wires.len();
-    pieces.extend(drawing.stubs.iter().enumerate().map(|(k, s)| (count + k, s[0], s[1])));
+    pieces.extend(
+        drawing
+            .stubs
+            .iter()
+            .enumerate()
+            .map(|(k, s)| (count + k, s[0], s[1])),
+    );
     pieces
 }
 
@@ -47,7 +53,8 @@ fn wrongs(model: &Model, drawing: &Drawing) -> Vec<String> {
         for t in drawing.taps.iter().filter(|t| !touches(drawing, p.0, t)) {
             let near = graph::RADIUS + 1.0;
             let (x, y) = t.at;
-            if share((p.1.0, p.2.0), (x - near, x + near), -0.5) && share((p.1.1, p.2.1), (y - near, y + near), -0.5)
+            if share((p.1.0, p.2.0), (x - near, x + near), -0.5)
+                && share((p.1.1, p.2.1), (y - near, y + near), -0.5)
             {
                 wrong.push(format!("{p:?} runs through the tap of {} on {}", t.from, t.to));
             }
@@ -70,9 +77,13 @@ fn wrongs(model: &Model, drawing: &Drawing) -> Vec<String> {
             if !both {
                 let (h, v) = if level(a) { (a, b) } else { (b, a) };
                 let inner = |x: f64, p: f64, q: f64| p.min(q) + 5.0 <= x && x <= p.max(q) - 5.0;
-                let meets = share((h.1.0, h.2.0), (v.1.0, v.1.0), -3.0) && share((v.1.1, v.2.1), (h.1.1, h.1.1), -3.0);
+                let meets = share((h.1.0, h.2.0), (v.1.0, v.1.0), -3.0)
+                    && share((v.1.1, v.2.1), (h.1.1, h.1.1), -3.0);
                 let tapped = |t: &graph::Circle| (t.at.0 - v.1.0).abs() < 1.0 && (t.at.1 - h.1.1).abs() < 1.0;
-                if meets && !drawing.taps.iter().any(tapped) && !(inner(v.1.0, h.1.0, h.2.0) && inner(h.1.1, v.1.1, v.2.1)) {
+                if meets
+                    && !drawing.taps.iter().any(tapped)
+                    && !(inner(v.1.0, h.1.0, h.2.0) && inner(h.1.1, v.1.1, v.2.1))
+                {
                     wrong.push(format!("{a:?} and {b:?} meet where one of them ends"));
                 }
             }
@@ -88,7 +99,9 @@ fn touches(drawing: &Drawing, net: usize, tap: &graph::Circle) -> bool {
     let Some(wire) = drawing.wires.get(net) else {
         return true;
     };
-    wire.name == tap.from || wire.name == tap.to || wire.branches.iter().any(|b| b.to == tap.to && b.tap.is_none())
+    wire.name == tap.from
+        || wire.name == tap.to
+        || wire.branches.iter().any(|b| b.to == tap.to && b.tap.is_none())
 }
 
 fn boxes(drawing: &Drawing) -> Vec<String> {
@@ -98,7 +111,9 @@ fn boxes(drawing: &Drawing) -> Vec<String> {
             wrong.push(format!("{} stands outside the picture", a.name));
         }
         for b in &drawing.boxes[k + 1..] {
-            if share((a.left, a.right), (b.left, b.right), -4.0) && share((a.top, a.bottom), (b.top, b.bottom), -4.0) {
+            if share((a.left, a.right), (b.left, b.right), -4.0)
+                && share((a.top, a.bottom), (b.top, b.bottom), -4.0)
+            {
                 wrong.push(format!("{} and {} overlap", a.name, b.name));
             }
         }
@@ -162,7 +177,10 @@ fn hold(model: &Model) {
     let wrong = wrongs(model, &drawing);
     assert!(wrong.is_empty(), "{}\n{model:#?}", wrong.join("\n"));
     let file = |d: &Drawing| graph::svg(d, graph::Dress::File);
-    assert!(file(&drawing) == file(&draw(model)), "two drawings of one creature differ");
+    assert!(
+        file(&drawing) == file(&draw(model)),
+        "two drawings of one creature differ"
+    );
 }
 
 #[test]

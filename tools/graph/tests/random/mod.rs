@@ -9,9 +9,8 @@ use proptest::prelude::*;
 pub(crate) fn creature() -> impl Strategy<Value = String> {
     let layers = prop::collection::vec(1..5_usize, 1..6);
     let links = |most| prop::collection::vec((any::<u16>(), any::<u16>(), any::<u8>()), 0..most);
-    (layers, links(40), links(10), 0..30_u8).prop_map(|(layers, wires, taps, body)| {
-        write(&layers, &wires, &taps, body as usize)
-    })
+    (layers, links(40), links(10), 0..30_u8)
+        .prop_map(|(layers, wires, taps, body)| write(&layers, &wires, &taps, body as usize))
 }
 
 fn write(layers: &[usize], wires: &[(u16, u16, u8)], taps: &[(u16, u16, u8)], body: usize) -> String {
@@ -78,5 +77,8 @@ fn write(layers: &[usize], wires: &[(u16, u16, u8)], taps: &[(u16, u16, u8)], bo
 }
 
 fn tap(from: &str, key: &str, to: &str, port: u8) -> String {
-    format!("{{ from = \"{from}\", {key} = \"{to}\", time_constant = \"{}ms\" }}", 10 * port as u32 + 10)
+    format!(
+        "{{ from = \"{from}\", {key} = \"{to}\", time_constant = \"{}ms\" }}",
+        10 * port as u32 + 10
+    )
 }
