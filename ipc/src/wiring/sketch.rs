@@ -238,6 +238,7 @@ fn port(name: &str) -> Option<PortName> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::wiring::{Catalog, Declaration, check};
 
     const FILE: &str = r#"
 creature = "x"
@@ -251,15 +252,15 @@ inhibit = [{ from = "a.out", output = "b.out" }]
 a = { kind = "some" }
 "#;
 
-    fn rejected(at: &str, message: &str) -> Rejected {
-        let start = FILE.find(at).expect("part of the file");
-        Rejected {
-            source: Source::new("x.toml", FILE),
-            diagnostics: vec![Diagnostic {
-                at: start..start + at.len(),
-                message: message.into(),
-                help: String::new(),
-            }],
+    /// Knows no kind of module at all.
+    struct Nothing;
+
+    impl Catalog for Nothing {
+        fn modules(&self) -> Vec<&'static Declaration> {
+            Vec::new()
+        }
+        fn bodies(&self) -> Vec<&'static Declaration> {
+            Vec::new()
         }
     }
 
@@ -281,15 +282,18 @@ a = { kind = "some" }
     #[test]
     fn faults_stand_where_the_checker_found_them() {
         let source = Source::new("x.toml", FILE);
-        let of = |r: Rejected| sketch(&source, Some(&r));
-        let one = of(rejected("c.in", "no such input"));
-        assert_eq!(one.layers[0].wires[0].fault, None);
-        assert_eq!(one.layers[0].wires[1].fault.as_deref(), Some("no such input"));
-        let both = of(rejected("a.out", "no such output"));
-        assert!(both.layers[0].wires.iter().all(|w| w.fault.is_some()));
-        let tap = of(rejected("{ from", "no time constant"));
-        assert!(tap.layers[0].taps[0].fault.is_some());
-        let none = of(rejected("period", "too short"));
-        assert_eq!(none.faults, ["x.toml:6: too short"]);
+        let rejected = check::creature(&source, &Nothing).expect_err("it has errors");
+        let sketch = sketch(&source, Some(&rejected));
+        let layer = &sketch.layers[0];
+        let unknown = layer.modules[0].fault.as_deref().expect("an unknown kind");
+        assert!(unknown.contains("some"), "{unknown}");
+        let tap = layer.taps[0].fault.as_deref().expect("no time constant");
+        assert!(tap.contains("time_constant"), "{tap}");
+        assert!(layer.wires.iter().all(|w| w.part.0.module == "a"));
+        let elsewhere = sketch.faults.join("\n");
+        assert!(
+            elsewhere.contains("x.toml:7: "),
+            "the wire without an arrow: {elsewhere}"
+        );
     }
 }

@@ -98,10 +98,10 @@ fn compose(model: &Model, columns: &[usize], places: &Places, paths: &[Path], le
     drawing
 }
 
-/// The highest point of anything.
+/// The highest point of any band.
 fn top(lengths: &Lengths) -> f64 {
     let bands = lengths.bands.iter().map(|b| b.0);
-    bands.fold(f64::MAX, f64::min).min(1e6)
+    bands.reduce(f64::min).unwrap_or(0.0)
 }
 
 fn frame(
