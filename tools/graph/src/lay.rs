@@ -24,14 +24,16 @@ pub fn draw(model: &Model) -> Drawing {
     let mut model = model.clone();
     let columns = rank::columns(&model);
     let rows = order::rows(&model, &columns);
-    let mut found = None;
-    for spare in SPARE {
-        let places = place(&model, &columns, &rows, spare);
-        if let Ok(branches) = route(&model, &columns, &places) {
-            found = Some((places, branches));
-            break;
-        }
-    }
+    let found = SPARE.into_iter().find_map(|spare| {
+        let tried = [false, true].map(|upward| {
+            let places = place(&model, &columns, &rows, spare, upward);
+            let branches = route(&model, &columns, &places).ok()?;
+            let cost: u32 = branches.iter().flatten().map(|b| b.cost).sum();
+            Some((cost, places, branches))
+        });
+        tried.into_iter().flatten().min_by_key(|t| t.0)
+    });
+    let found = found.map(|(_, places, branches)| (places, branches));
     let (places, branches) = found.unwrap_or_else(|| {
         // So much that nothing more fits: the boxes at least, and a word about it.
         model
@@ -42,7 +44,7 @@ pub fn draw(model: &Model) -> Drawing {
             node.inputs.clear();
             node.outputs.clear();
         }
-        (place(&model, &columns, &rows, SPARE[0]), Vec::new())
+        (place(&model, &columns, &rows, SPARE[0], false), Vec::new())
     });
     let paths = paths(&model, &places, &branches);
     let lengths = measure(&model, &columns, &places, &paths);

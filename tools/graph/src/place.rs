@@ -73,8 +73,9 @@ impl Slots {
     }
 }
 
-/// Places everything, with `spare` tracks in each channel beside those that it probably needs.
-pub(crate) fn place(model: &Model, columns: &[usize], order: &Order, spare: usize) -> Places {
+/// Places everything, with `spare` tracks in each channel beside those that it probably needs. Where two ends
+/// of the body want one line, one gives way `upward` or downward.
+pub(crate) fn place(model: &Model, columns: &[usize], order: &Order, spare: usize, upward: bool) -> Places {
     let slots = slots(model, columns, order);
     // Behind the last module is a column for actuators, also if there are none: wires come out there.
     let modules = model
@@ -120,7 +121,7 @@ pub(crate) fn place(model: &Model, columns: &[usize], order: &Order, spare: usiz
             .outputs
             .push(at(&slots.outputs, places.right[columns[node]]));
     }
-    body_ends(model, &mut places);
+    body_ends(model, upward, &mut places);
     stubs(model, &mut places);
     places
 }
@@ -181,7 +182,7 @@ fn down(slots: &[Slots], order: &Order, tracks: usize, places: &mut Places) -> V
 
 /// Sensors and actuators stand beside what they are wired to first, each on a line of its own; those with the
 /// shortest way choose first.
-fn body_ends(model: &Model, places: &mut Places) {
+fn body_ends(model: &Model, upward: bool, places: &mut Places) {
     let mut wishes: Vec<(usize, usize, usize)> = Vec::new();
     for (node, n) in model.nodes.iter().enumerate() {
         let nearest = match n.role {
@@ -217,7 +218,10 @@ fn body_ends(model: &Model, places: &mut Places) {
         let extra = SLOT * n.inputs.len().max(n.outputs.len()).saturating_sub(1);
         let free = |y: &usize| taken.iter().all(|t| *t >= y + extra + SLOT || *y >= t + SLOT);
         let reach = places.height + SLOT * 4 * model.nodes.len();
-        let near = (0..reach).flat_map(|d| [wanted + d, wanted.saturating_sub(d)]);
+        let near = (0..reach).flat_map(|d| {
+            let (over, under) = (wanted.saturating_sub(d), wanted + d);
+            if upward { [over, under] } else { [under, over] }
+        });
         let y = near.into_iter().find(free).unwrap_or(wanted).max(1);
         places.height = places.height.max(y + extra + 2);
         taken.extend((0..=extra / SLOT).map(|k| y + SLOT * k));

@@ -14,6 +14,8 @@ pub(crate) struct Branch {
     pub(crate) end: usize,
     /// Points one step apart, from the output's terminal or a joint to the end's terminal or circle.
     pub(crate) way: Vec<Point>,
+    /// What it cost when it was found.
+    pub(crate) cost: u32,
 }
 
 /// How often all nets are begun anew with the one first that found no way.
@@ -155,11 +157,11 @@ fn lay(model: &Model, places: &Places, maze: &mut Maze, net: usize) -> Option<Ve
                 sources.push((start, None));
             }
         }
-        let Some((way, _)) = maze.find(&sources, goal, owner) else {
+        let Some((way, cost)) = maze.find(&sources, goal, owner) else {
             enter(model, places, maze, net, &branches, false);
             return None;
         };
-        let branch = Branch { end, way };
+        let branch = Branch { end, way, cost };
         enter(model, places, maze, net, std::slice::from_ref(&branch), true);
         branches.push(branch);
     }

@@ -218,7 +218,7 @@ fn suppressors_stand_in_series_before_the_input_the_highest_level_nearest() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 48, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: 32, failure_persistence: None, ..ProptestConfig::default() })]
     #[test]
     fn any_creature(file in random::creature()) {
         hold(&files::read(&[&file]));
