@@ -69,6 +69,7 @@ function arm(group) {
   group.setAttribute("tabindex", "0");
   group.setAttribute("role", "img");
   group.dataset.holds = "false";
+  group.dataset.constant = group.querySelector(".constant").textContent;
   const disc = group.querySelector(".disc");
   const left = disc.cloneNode();
   left.setAttribute("class", "left");
@@ -122,15 +123,15 @@ function showTap(group, tap) {
   const holds = tap.holds === true;
   const left = holds && tap.remaining_ms >= 0 ? tap.remaining_ms : null;
   group.dataset.holds = String(holds);
-  const whole = tap.time_constant_ms || 1;
+  const whole = tap.time_constant_ms || left || 1;
   const share = left === null ? (holds ? 100 : 0) : Math.min(100, (left / whole) * 100);
   group.querySelector(".left").setAttribute("stroke-dasharray", `${share} 100`);
-  const text = left === null ? span(tap.time_constant_ms) : `${(left / 1000).toFixed(1)} s`;
+  const text = left === null ? group.dataset.constant : `${(left / 1000).toFixed(1)} s`;
   say(group.querySelector(".constant"), text);
   const verb = tap.kind === "inhibit" ? "inhibits" : "suppresses";
   const counts = `; delivered ${number(tap.delivered)}, rejected ${number(tap.rejected)}`;
   const doing = holds ? `, holds${left === null ? "" : `, ${text} left`}` : ", does not hold";
-  const said = `${tap.from} ${verb} ${tap.to} for ${span(tap.time_constant_ms)}${doing}${counts}`;
+  const said = `${tap.from} ${verb} ${tap.to} for ${group.dataset.constant}${doing}${counts}`;
   say(group.querySelector("title"), said);
   group.setAttribute("aria-label", said);
 }
