@@ -12,6 +12,7 @@ use ipc::message::Kind;
 use ipc::wire::{Page, Reader, TapEnd, TapGauge};
 use ipc::wiring::creature::{Creature, How};
 use ipc::wiring::directory::Directory;
+use ipc::wiring::policy::{self, Claim, ClaimedTap};
 
 /// Where a port of the creature is found: which layer, and which register or outlet of it.
 pub type Place = (usize, usize);
@@ -130,21 +131,9 @@ impl Policy {
             }
         };
         let attached: Vec<&Plug> = attached.into_iter().collect();
-        let taken = self.directory.layers.contains(&plug.layer);
-        against(
-            taken || attached.iter().any(|a| a.layer == plug.layer),
-            format!("there is a layer {:?} already", plug.layer),
-        );
         against(
             attached.len() >= outsiders.layers_max,
             format!("{} layers are attached, the most allowed", attached.len()),
-        );
-        against(
-            plug.level > outsiders.level_max,
-            format!(
-                "level {} is above {}, the highest allowed",
-                plug.level, outsiders.level_max
-            ),
         );
         against(
             plug.outputs.len() > ipc::wire::WIRES_MAX,
@@ -157,6 +146,9 @@ impl Policy {
         for tap in &plug.taps {
             self.reasons_against_tap(plug, tap, &mut against);
         }
+        let host = self.directory_with(attached);
+        let breaches = policy::breaches(&host, &claim(plug));
+        reasons.extend(breaches.iter().map(policy::Breach::to_string));
         reasons
     }
 
@@ -183,19 +175,6 @@ impl Policy {
             format!("{} is not among the layer's outputs", tap.from),
         );
         against(
-            !self.directory.open_taps.contains(to),
-            format!("the creature does not open {to} to taps from outside"),
-        );
-        against(
-            self.directory.reflexes.contains(to),
-            format!("{to} is part of the halt channel"),
-        );
-        let longest = self.creature.outsiders.time_constant_max;
-        against(
-            tap.time_constant > longest,
-            format!("the time constant {} is above {longest}", tap.time_constant),
-        );
-        against(
             tap.time_constant == Span::ZERO,
             "a tap needs a time constant".into(),
         );
@@ -210,5 +189,22 @@ impl Policy {
             differ,
             format!("{} does not carry what {to} takes, {}", tap.from, kinds.1),
         );
+    }
+}
+
+/// What a layer asks for, as the policy judges it.
+fn claim(plug: &Plug) -> Claim<'_> {
+    let own = |name: &str| plug.outputs.iter().any(|o| o.name == name);
+    let reads = plug.wires.iter().map(|(from, _)| from.as_str());
+    let tap = |tap: &PlugTap| ClaimedTap {
+        how: tap.how,
+        to: tap.to.clone(),
+        time_constant: tap.time_constant,
+    };
+    Claim {
+        layer: &plug.layer,
+        level: plug.level,
+        reads: reads.filter(|from| !own(from)).collect(),
+        taps: plug.taps.iter().map(tap).collect(),
     }
 }

@@ -138,6 +138,12 @@ impl RunningLayer {
         self.order = order;
     }
 
+    /// Puts every module back in its initial state and empties its registers: the layer begins anew.
+    pub fn restart(&mut self) {
+        self.seats.iter_mut().for_each(|seat| seat.machine.reset());
+        self.registers.iter_mut().for_each(Register::clear);
+    }
+
     /// How many modules there are.
     pub fn len(&self) -> usize {
         self.seats.len()

@@ -46,13 +46,16 @@ fn load(path: &Path) -> Result<Source, Rejected> {
         Ok(text) => Ok(Source::new(name, text)),
         Err(e) => {
             let diagnostic = Diagnostic {
+                rule: None,
                 at: 0..0,
                 message: format!("the file cannot be read: {e}"),
                 help: "expected the path of a TOML file".into(),
+                also: None,
             };
             Err(Rejected {
                 source: Source::new(name, ""),
                 diagnostics: vec![diagnostic],
+                more: 0,
             })
         }
     }
