@@ -6,6 +6,7 @@ mod live;
 mod modules;
 mod new;
 mod paint;
+mod picture;
 mod prefixes;
 mod test;
 mod watch;
@@ -29,7 +30,8 @@ use ipc::control::Request;
     subsumectl check mine.toml            every error of a creature file\n  \
     subsumectl test scenarios/            what must come of a creature, on the virtual clock\n  \
     subsumectl prefixes allen.toml --layers wander.toml --scenarios scenarios/\n  \
-    subsumectl new creature mine          a creature to start from\n\n\
+    subsumectl new creature mine          a creature to start from\n  \
+    subsumectl graph mine.toml -o x.svg   a picture of it\n\n\
     Status: 0 done; 1 not done (no daemon, refused, an expectation not met); 2 bad input."
 )]
 struct Options {
@@ -92,6 +94,21 @@ enum Command {
     Truckin(truckin::command::TruckinArgs),
     /// ADROIT: check, draw, run and change programs of releasing mechanisms
     Adroit(adroit::command::AdroitArgs),
+    /// Draws a creature: layers stacked, wires, taps with their time constants; what is wrong in red
+    Graph {
+        /// The creature file, and manifests of layers that join it
+        #[arg(required = true, value_name = "FILE")]
+        files: Vec<PathBuf>,
+        /// More manifests of layers that join it
+        #[arg(long, num_args = 1.., value_name = "MANIFEST")]
+        layers: Vec<PathBuf>,
+        /// Graphviz text instead of SVG
+        #[arg(long)]
+        dot: bool,
+        /// Where to write; the terminal if not given
+        #[arg(short, long, value_name = "OUT")]
+        output: Option<PathBuf>,
+    },
     /// Runs scenario files on the virtual clock
     Test {
         /// Scenario files, and folders of them
@@ -165,6 +182,15 @@ fn main() -> ExitCode {
         Command::New { what } => return new::new(&what, json),
         Command::Truckin(args) => return truckin::command::command(args),
         Command::Adroit(args) => return adroit::command::command(args),
+        Command::Graph {
+            mut files,
+            layers,
+            dot,
+            output,
+        } => {
+            files.extend(layers);
+            return picture::draw(&files, dot, output.as_deref(), json);
+        }
         Command::Test {
             paths,
             filter,
