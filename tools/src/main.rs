@@ -1,6 +1,7 @@
 //! `subsumectl`: looks at a running creature, stops it, checks creature files.
 
 mod check;
+mod compete;
 mod live;
 mod watch;
 
@@ -20,7 +21,8 @@ use ipc::control::Request;
     subsumectl watch turn.heading         messages of a wire as they come\n  \
     subsumectl halt; subsumectl reset     emergency stop, and its end\n  \
     subsumectl --creature jerry status    another instance\n  \
-    subsumectl check mine.toml            every error of a creature file\n\n\
+    subsumectl check mine.toml            every error of a creature file\n  \
+    subsumectl compete allen --rows 01    how well levels 0 and 1 do, over 20 simulated hours\n\n\
     Status: 0 done; 1 not done (no daemon, refused); 2 bad input."
 )]
 struct Options {
@@ -63,6 +65,8 @@ enum Command {
         #[arg(required = true)]
         files: Vec<PathBuf>,
     },
+    /// Measures a creature level by level over many simulated hours, and prints the table
+    Compete(compete::Asked),
     /// Lists the kinds of module, or explains one
     Modules {
         /// A kind of module
@@ -89,6 +93,7 @@ fn main() -> ExitCode {
         ),
         Command::Reset => live::order(creature, json, Request::Reset, "reset"),
         Command::Check { files } => return check::check(&files, json),
+        Command::Compete(asked) => return compete::compete(&asked, json),
         Command::Modules { name } => return check::modules(name.as_deref(), json),
     };
     match done {
