@@ -14,7 +14,7 @@ use std::time::Duration;
 use afsm::layer::RunningLayer;
 use ipc::clock::{self, Span, Time};
 use ipc::wire::iceoryx::{Domain, OwnedPage};
-use ipc::wiring::creature::{Creature, Overrun};
+use ipc::wiring::creature::{Creature, Overrun, PRIORITY_MAX, rate_monotonic};
 use ipc::wiring::directory::{Directory, output_ports};
 use serde_json::{Value, json};
 
@@ -27,10 +27,6 @@ use crate::machine::{Embodied, Machine};
 use crate::motor::{HaltChannel, Motor};
 use crate::plugs::Plugs;
 use crate::status::{self, Rates, Record, Watched, WatchedTap};
-
-/// Priority of the motor unit; layers come below it, the shorter the period the higher. Above what ordinary
-/// programs choose, below the kernel's own threads at 99.
-const PRIORITY_MAX: u8 = 80;
 
 /// What the threads of the daemon share, none of them real-time.
 pub struct Shared {
@@ -135,8 +131,7 @@ pub fn start(name: &str, machine: Machine, owned: OwnedPage, domain: Domain) -> 
     periods.dedup();
     for station in stations {
         let spec = &station.spec;
-        let rank = periods.iter().position(|p| *p == spec.period).unwrap_or(0);
-        let monotonic = PRIORITY_MAX.saturating_sub(1 + rank as u8).max(1);
+        let monotonic = rate_monotonic(&periods, spec.period);
         let plan = Plan {
             name: spec.name.clone(),
             period: spec.period,

@@ -3,6 +3,7 @@
 mod check;
 mod compete;
 mod live;
+mod test;
 mod watch;
 
 use std::path::PathBuf;
@@ -22,8 +23,9 @@ use ipc::control::Request;
     subsumectl halt; subsumectl reset     emergency stop, and its end\n  \
     subsumectl --creature jerry status    another instance\n  \
     subsumectl check mine.toml            every error of a creature file\n  \
-    subsumectl compete allen --rows 01    how well levels 0 and 1 do, over 20 simulated hours\n\n\
-    Status: 0 done; 1 not done (no daemon, refused); 2 bad input."
+    subsumectl compete allen --rows 01    how well levels 0 and 1 do, over 20 simulated hours\n  \
+    subsumectl test scenarios/            what must come of a creature, on the virtual clock\n\n\
+    Status: 0 done; 1 not done (no daemon, refused, an expectation not met); 2 bad input."
 )]
 struct Options {
     /// The running creature to speak to
@@ -67,6 +69,25 @@ enum Command {
     },
     /// Measures a creature level by level over many simulated hours, and prints the table
     Compete(compete::Asked),
+    /// Truckin': games, the whole grid, evolution of trucks
+    Truckin(truckin::command::TruckinArgs),
+    /// ADROIT: check, draw, run and change programs of releasing mechanisms
+    Adroit(adroit::command::AdroitArgs),
+    /// Runs scenario files on the virtual clock
+    Test {
+        /// Scenario files, and folders of them
+        #[arg(required = true, value_name = "FILE-or-FOLDER")]
+        paths: Vec<PathBuf>,
+        /// Only scenarios with this in their path or title
+        #[arg(long, value_name = "TEXT")]
+        filter: Option<String>,
+        /// Steps the modules of a layer in another order each beat, by this seed
+        #[arg(long, value_name = "SEED")]
+        shuffle: Option<u64>,
+        /// Writes a report for continuous integration as well
+        #[arg(long, value_name = "FILE")]
+        junit: Option<PathBuf>,
+    },
     /// Lists the kinds of module, or explains one
     Modules {
         /// A kind of module
@@ -94,6 +115,22 @@ fn main() -> ExitCode {
         Command::Reset => live::order(creature, json, Request::Reset, "reset"),
         Command::Check { files } => return check::check(&files, json),
         Command::Compete(asked) => return compete::compete(&asked, json),
+        Command::Truckin(args) => return truckin::command::command(args),
+        Command::Adroit(args) => return adroit::command::command(args),
+        Command::Test {
+            paths,
+            filter,
+            shuffle,
+            junit,
+        } => {
+            return test::test(&test::Wanted {
+                paths: &paths,
+                filter: filter.as_deref(),
+                shuffle,
+                junit: junit.as_deref(),
+                json,
+            });
+        }
         Command::Modules { name } => return check::modules(name.as_deref(), json),
     };
     match done {

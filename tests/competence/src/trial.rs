@@ -10,7 +10,7 @@ use afsm::random::Random;
 use daemon::body::office::{OfficeGuard, OfficeWorld};
 use daemon::gate::Causes;
 use daemon::machine::{Machine, kinds};
-use daemon::virtual_run::VirtualRun;
+use daemon::virtual_run::{BEGIN, Stimulus, VirtualRun};
 use ipc::clock::{Span, Time};
 use ipc::message::{Payload, Polar};
 use ipc::wire::{Page, Reader};
@@ -141,10 +141,14 @@ fn put(machine: &mut Machine, world: OfficeWorld) {
     machine.body.as_mut().expect("the creature has a body").world = Box::new(world);
 }
 
-fn office_of(machine: &mut Machine) -> OfficeGuard<'_> {
+fn world_of(machine: &mut Machine) -> &mut OfficeWorld {
     let body = machine.body.as_mut().expect("the creature has a body");
     let world = body.world.as_any().downcast_mut::<OfficeWorld>();
-    world.expect("the body is in an office").office()
+    world.expect("the body is in an office")
+}
+
+fn office_of(machine: &mut Machine) -> OfficeGuard<'_> {
+    world_of(machine).office()
 }
 
 impl Robot {
@@ -254,6 +258,8 @@ impl Robot {
         for tap in &self.run.machine.taps {
             figures.refused += tap.gauge.counts().faults as f64;
         }
+        let battery = world_of(&mut self.run.machine).battery();
+        (figures.flat, figures.charges) = (battery.flat as f64, battery.charges as f64);
         let office = office_of(&mut self.run.machine);
         let contacts = office.contacts_of(self.index);
         figures.caused = contacts.caused as f64;
@@ -290,16 +296,18 @@ impl Killer {
         }
         self.dead = !self.dead;
         self.due = run.elapsed() + life(&mut self.random);
-        let stations = run.machine.stations.iter();
-        let explore = stations
-            .map(|s| s.spec.level)
-            .position(|level| level == 2)
-            .expect("the creature has a level 2");
-        if self.dead {
-            run.kill(explore);
+        let mut stations = run.machine.stations.iter_mut();
+        let explore = stations.find(|s| s.spec.level == 2);
+        let explore = explore.expect("the creature has a level 2");
+        let name = explore.spec.name.clone();
+        let stimulus = if self.dead {
+            Stimulus::Freeze(name)
         } else {
-            run.restart(explore);
-        }
+            // As a new process would begin: every module in its initial state, nothing in its registers.
+            explore.running.restart();
+            Stimulus::Thaw(name)
+        };
+        run.moment(BEGIN + run.elapsed(), &[stimulus]);
     }
 }
 
