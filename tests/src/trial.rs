@@ -148,12 +148,13 @@ impl Trial {
             rooms.extend(room_of(now));
             before = now;
         }
+        let office = self.office();
         Figures {
-            travelled_m: self.office().distance_travelled_m(),
+            travelled_m: office.distance_travelled_m(),
             headings: headings.len(),
             rooms,
             drift_m,
-            contacts: self.office().contacts().clone(),
+            contacts: office.contacts().clone(),
         }
     }
 }

@@ -91,7 +91,7 @@ static DECLARATION: Declaration = Declaration {
         number("cone", 30.0, 60.0, "deg", "full width of a sonar's cone"),
         Parameter {
             name: "dead",
-            takes: Takes::Numbers { default: Some(&[]) },
+            takes: Takes::Numbers { low: 0.0, high: 11.0, most: 12, default: Some(&[]) },
             unit: "",
             about: "sonars that hear nothing, numbered from 0, straight ahead, counter-clockwise",
         },

@@ -189,6 +189,19 @@ impl VirtualRun {
         self.now = end;
     }
 
+    /// Kills the `station`-th layer: it beats no more, and what its taps said last runs out by itself.
+    pub fn kill(&mut self, station: usize) {
+        self.due[station] = None;
+    }
+
+    /// Starts a killed layer again as its process would be: every module in its initial state, nothing in
+    /// its registers.
+    pub fn restart(&mut self, station: usize) {
+        let Station { spec, running, .. } = &mut self.machine.stations[station];
+        running.restart();
+        self.due[station] = Some(beat_from(BEGIN + spec.phase, spec.period, self.now));
+    }
+
     /// When the next beat is due.
     pub fn next_beat(&self) -> Option<Time> {
         let layers = self.due.iter().copied().flatten();

@@ -10,7 +10,7 @@ use afsm::random::Random;
 use daemon::body::office::{OfficeGuard, OfficeWorld};
 use daemon::gate::Causes;
 use daemon::machine::{Machine, kinds};
-use daemon::virtual_run::{BEGIN, Stimulus, VirtualRun};
+use daemon::virtual_run::VirtualRun;
 use ipc::clock::{Span, Time};
 use ipc::message::{Payload, Polar};
 use ipc::wire::{Page, Reader};
@@ -296,18 +296,16 @@ impl Killer {
         }
         self.dead = !self.dead;
         self.due = run.elapsed() + life(&mut self.random);
-        let mut stations = run.machine.stations.iter_mut();
-        let explore = stations.find(|s| s.spec.level == 2);
-        let explore = explore.expect("the creature has a level 2");
-        let name = explore.spec.name.clone();
-        let stimulus = if self.dead {
-            Stimulus::Freeze(name)
+        let stations = run.machine.stations.iter();
+        let explore = stations
+            .map(|s| s.spec.level)
+            .position(|level| level == 2)
+            .expect("the creature has a level 2");
+        if self.dead {
+            run.kill(explore);
         } else {
-            // As a new process would begin: every module in its initial state, nothing in its registers.
-            explore.running.restart();
-            Stimulus::Thaw(name)
-        };
-        run.moment(BEGIN + run.elapsed(), &[stimulus]);
+            run.restart(explore);
+        }
     }
 }
 
