@@ -2,6 +2,7 @@
 
 mod check;
 mod example;
+mod compete;
 mod live;
 mod modules;
 mod new;
@@ -31,7 +32,8 @@ use ipc::control::Request;
     subsumectl test scenarios/            what must come of a creature, on the virtual clock\n  \
     subsumectl prefixes allen.toml --layers wander.toml --scenarios scenarios/\n  \
     subsumectl new creature mine          a creature to start from\n  \
-    subsumectl graph mine.toml -o x.svg   a picture of it\n\n\
+    subsumectl graph mine.toml -o x.svg   a picture of it\n  \
+    subsumectl compete allen --rows 01    how well levels 0 and 1 do, over 20 simulated hours\n\n\
     Status: 0 done; 1 not done (no daemon, refused, an expectation not met); 2 bad input."
 )]
 struct Options {
@@ -90,6 +92,8 @@ enum Command {
         #[command(subcommand)]
         what: new::New,
     },
+    /// Measures a creature level by level over many simulated hours, and prints the table
+    Compete(compete::Asked),
     /// Truckin': games, the whole grid, evolution of trucks
     Truckin(truckin::command::TruckinArgs),
     /// ADROIT: check, draw, run and change programs of releasing mechanisms
@@ -180,6 +184,7 @@ fn main() -> ExitCode {
         }
         Command::Schema => return check::schema(),
         Command::New { what } => return new::new(&what, json),
+        Command::Compete(asked) => return compete::compete(&asked, json),
         Command::Truckin(args) => return truckin::command::command(args),
         Command::Adroit(args) => return adroit::command::command(args),
         Command::Graph {
