@@ -116,6 +116,11 @@ impl Plugs {
         self.lock().version
     }
 
+    /// What the page draws has changed by itself: another floor.
+    pub fn picture_changed(&self) {
+        self.lock().version += 1;
+    }
+
     /// Drops what the layers have let go of. Call it now and then.
     pub fn sweep(&self) {
         for hand in &mut self.lock().hands {

@@ -11,6 +11,7 @@
 
 use ipc::clock::{Span, Time};
 
+use crate::body;
 use crate::machine::{Machine, Station};
 
 /// A creature on the virtual clock.
@@ -64,6 +65,7 @@ impl VirtualRun {
             stations,
             hands,
             body,
+            watchdog,
             ..
         } = &mut self.machine;
         for (station, due) in stations.iter_mut().zip(&self.due) {
@@ -84,9 +86,11 @@ impl VirtualRun {
             }
         }
         if let Some(body) = body_due {
+            watchdog.look(t);
+            watchdog.channel.watchdog.beat(t);
             body.motor.act(t);
             body.gauge.beat(t);
-            body.world.tick(t, &mut body.link);
+            body::turn(body.world.as_mut(), &mut body.link, || t);
             self.body_due = t + body.motor.period();
         }
         for hand in hands {

@@ -186,6 +186,9 @@ pub struct Event {
 pub struct Connection {
     reader: BufReader<UnixStream>,
     writer: UnixStream,
+    line_max: usize,
+    /// The beginning of a line whose end has not come yet.
+    begun: Vec<u8>,
 }
 
 impl Connection {
@@ -198,7 +201,16 @@ impl Connection {
         Ok(Connection {
             reader: BufReader::new(stream),
             writer,
+            line_max: LINE_MAX,
+            begun: Vec::new(),
         })
+    }
+
+    /// The same, but lines longer than `bytes` are refused.
+    #[must_use]
+    pub fn with_lines_up_to(mut self, bytes: usize) -> Connection {
+        self.line_max = bytes;
+        self
     }
 
     /// Sends one document.
@@ -214,15 +226,15 @@ impl Connection {
     /// Receives one document; `None` when the other end has closed.
     ///
     /// # Errors
-    /// When the line is too long or is not such a document, or the time-out of the socket is reached.
+    /// When the line is too long or is not such a document. When the time-out of the socket is reached
+    /// ([`timed_out`]) it can be called again: what came so far is kept.
     pub fn receive<T: for<'d> Deserialize<'d>>(&mut self) -> io::Result<Option<T>> {
-        let mut line = Vec::new();
-        let n = (&mut self.reader)
-            .take(LINE_MAX as u64)
-            .read_until(b'\n', &mut line)?;
-        if n == 0 {
+        let room = (self.line_max - self.begun.len()) as u64;
+        let n = (&mut self.reader).take(room).read_until(b'\n', &mut self.begun)?;
+        if n == 0 && self.begun.is_empty() {
             return Ok(None);
         }
+        let line = std::mem::take(&mut self.begun);
         if line.last() != Some(&b'\n') {
             return Err(io::Error::new(
                 io::ErrorKind::InvalidData,
@@ -244,10 +256,23 @@ impl Connection {
             .ok_or_else(|| io::Error::new(io::ErrorKind::UnexpectedEof, "the daemon closed the connection"))
     }
 
+    /// Whether part of a line has come and its end has not.
+    pub fn in_mid_line(&self) -> bool {
+        !self.begun.is_empty()
+    }
+
     /// The socket itself.
     pub fn socket(&self) -> &UnixStream {
         &self.writer
     }
+}
+
+/// Whether a receive only ran into the time-out of its socket.
+pub fn timed_out(error: &io::Error) -> bool {
+    matches!(
+        error.kind(),
+        io::ErrorKind::WouldBlock | io::ErrorKind::TimedOut | io::ErrorKind::Interrupted
+    )
 }
 
 /// Why a daemon could not be called.
@@ -355,7 +380,43 @@ pub fn run_dir() -> PathBuf {
 
 /// The control socket of the daemon that runs `creature`.
 pub fn socket_path(creature: &str) -> PathBuf {
-    run_dir().join(format!("{}{creature}.sock", domain_prefix()))
+    socket_in_run_dir(creature, "sock")
+}
+
+/// A socket of this shared-memory domain, `name.suffix`.
+pub(crate) fn socket_in_run_dir(name: &str, suffix: &str) -> PathBuf {
+    run_dir().join(format!("{}{name}.{suffix}", domain_prefix()))
+}
+
+/// Who is at the other end of a Unix socket, as the kernel knows it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Peer {
+    /// Its process.
+    pub pid: i32,
+    /// Its user.
+    pub user: u32,
+    /// Its group.
+    pub group: u32,
+}
+
+impl Peer {
+    /// Who connected to, or listens at, the other end of `stream` (`SO_PEERCRED`).
+    ///
+    /// # Errors
+    /// When the kernel does not say.
+    pub fn of(stream: &UnixStream) -> io::Result<Peer> {
+        let credentials = rustix::net::sockopt::socket_peercred(stream)?;
+        Ok(Peer {
+            pid: credentials.pid.as_raw_nonzero().get(),
+            user: credentials.uid.as_raw(),
+            group: credentials.gid.as_raw(),
+        })
+    }
+
+    /// Whether it is this process's user, or root, who may do everything to this process anyway.
+    pub fn is_us(self) -> bool {
+        self.user == rustix::process::geteuid().as_raw() || self.user == 0
+    }
 }
 
 fn domain_prefix() -> String {

@@ -87,7 +87,6 @@ pub struct OfficeWorld {
     /// The simulation.
     pub office: Office,
     last: Option<Time>,
-    pinged: u64,
     sonar: [f64; 12],
     range_max: f64,
 }
@@ -118,7 +117,6 @@ fn build(settings: &[Setting], seed: u64, start: Option<Place>) -> Box<dyn World
     Box::new(OfficeWorld {
         office: Office::new(&config),
         last: None,
-        pinged: 0,
         sonar: [range_max; 12],
         range_max,
     })
@@ -129,7 +127,10 @@ const STEP_MAX: Span = Span::millis(20);
 
 impl World for OfficeWorld {
     fn tick(&mut self, now: Time, link: &mut WorldEnd) {
-        let drive = drive(now, link);
+        let drive = Drive {
+            forward: link.motion(FORWARD)[0],
+            turn: link.motion(TURN)[0],
+        };
         let mut left = self
             .last
             .map_or(Span::ZERO, |last| now.since(last))
@@ -141,22 +142,18 @@ impl World for OfficeWorld {
             self.office.step(step.seconds(), drive);
             left -= step.0;
         }
-        if let Some(ping) = link.commands[PING].newer_than(self.pinged) {
-            self.pinged = ping.number;
+        if link.order(PING).is_some() {
             self.sonar = self.office.sonar();
-            link.sensors[SONAR].write(now, &Map { ranges: self.sonar }.pack());
+            link.tell(SONAR, now, &Map { ranges: self.sonar }.pack());
         }
         let pose = self.office.odometry();
-        link.sensors[COMPASS].write(now, &pose.heading.pack());
-        link.sensors[ODOMETRY].write(
-            now,
-            &Pose {
-                x: pose.x,
-                y: pose.y,
-                heading: pose.heading,
-            }
-            .pack(),
-        );
+        link.tell(COMPASS, now, &pose.heading.pack());
+        let odometry = Pose {
+            x: pose.x,
+            y: pose.y,
+            heading: pose.heading,
+        };
+        link.tell(ODOMETRY, now, &odometry.pack());
     }
 
     fn view(&self) -> Value {
@@ -180,24 +177,5 @@ impl World for OfficeWorld {
             "walls": [], "boxes": boxes, "bounds": [0.0, 0.0, plan.width, plan.height],
             "robot_radius_m": ROBOT_RADIUS_M,
         })
-    }
-
-    fn as_any(&mut self) -> &mut dyn std::any::Any {
-        self
-    }
-}
-
-/// What the wheels are told. The body's own halt: commands that went stale are no commands.
-fn drive(now: Time, link: &WorldEnd) -> Drive {
-    let fresh = |i: usize| {
-        let reading = link.commands[i].read()?;
-        (now.since(reading.stamp) <= KIND.stale).then_some(reading.words[0])
-    };
-    match (fresh(FORWARD), fresh(TURN)) {
-        (Some(forward), Some(turn)) => Drive { forward, turn },
-        _ => Drive {
-            forward: 0.0,
-            turn: 0.0,
-        },
     }
 }

@@ -36,6 +36,11 @@ pub const READERS_MAX: usize = 64;
 /// How long a newcomer waits for a page whose owner is alive.
 const ATTACH_WAIT: Duration = Duration::from_secs(2);
 
+/// How long a new owner waits for a former one to be cleaned up, and how often it looks. Measured: up to
+/// 272 ms when short of CPU.
+const OWN_WAIT: Duration = Duration::from_millis(500);
+const OWN_STEP: Duration = Duration::from_millis(10);
+
 // SAFETY: a cell is `repr(C)`, made of atomics, without pointers, and the same in every process built
 // for this layout; the type name carries the layout's version.
 unsafe impl ZeroCopySend for Cell {
@@ -185,14 +190,27 @@ impl Domain {
                 other => ShareError::Refused(format!("creating the service {service_name}: {other}")),
             })?;
         let slots = wires.max(1);
-        let publisher = service
-            .publisher_builder()
-            .initial_max_slice_len(slots)
-            .create()
-            .map_err(|e| match e {
-                PublisherCreateError::ExceedsMaxSupportedPublishers => ShareError::Owned(name.into()),
-                other => ShareError::Refused(format!("creating a publisher on {service_name}: {other}")),
-            })?;
+        let mut patience = OWN_WAIT.as_millis() / OWN_STEP.as_millis();
+        let publisher = loop {
+            let builder = service.publisher_builder().initial_max_slice_len(slots);
+            match builder.create() {
+                Ok(publisher) => break publisher,
+                // A dead owner may just be under clean-up by another process.
+                Err(PublisherCreateError::ExceedsMaxSupportedPublishers) if patience > 0 => {
+                    patience -= 1;
+                    std::thread::sleep(OWN_STEP);
+                    self.clean();
+                }
+                Err(PublisherCreateError::ExceedsMaxSupportedPublishers) => {
+                    return Err(ShareError::Owned(name.into()));
+                }
+                Err(other) => {
+                    return Err(ShareError::Refused(format!(
+                        "creating a publisher on {service_name}: {other}"
+                    )));
+                }
+            }
+        };
         let sample = publisher
             .loan_slice_uninit(slots)
             .map_err(|e| ShareError::Refused(format!("loaning the page of {service_name}: {e}")))?;

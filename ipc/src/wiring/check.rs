@@ -120,6 +120,7 @@ impl Checker<'_> {
             self.taps(layer, links, &parts.reflexes, &parts.open_taps);
         }
         let reflexes = self.reflexes(&parts.reflexes);
+        let watchdog_device = self.watchdog_device(parts.watchdog_device);
         let tap = self.open_taps(&parts.open_taps);
         self.reached(&layers, &tap);
         let mut layers: Vec<Layer> = layers.into_iter().map(|(layer, _)| layer).collect();
@@ -133,6 +134,7 @@ impl Checker<'_> {
                 reflexes,
                 hold: parts.hold.unwrap_or(Span::millis(500)),
                 stale: parts.stale.unwrap_or(Span::millis(200)),
+                watchdog_device,
             },
             outsiders: Outsiders {
                 tap,
@@ -526,6 +528,17 @@ impl Checker<'_> {
             reflexes.push(name.value.clone());
         }
         reflexes
+    }
+
+    fn watchdog_device(&mut self, given: Option<Placed<String>>) -> Option<std::path::PathBuf> {
+        let given = given?;
+        let path = std::path::PathBuf::from(&given.value);
+        if !path.is_absolute() || given.value.contains('\0') {
+            let message = format!("{:?} is not an absolute path", given.value);
+            let help = "expected the path of a watchdog device such as \"/dev/watchdog\"";
+            self.findings.error(given.at, message, help);
+        }
+        Some(path)
     }
 
     fn open_taps(&mut self, given: &[Placed<PortName>]) -> Vec<PortName> {

@@ -20,6 +20,7 @@ pub(super) struct Parts<'t, 's> {
     pub(super) reflexes: Vec<Placed<PortName>>,
     pub(super) hold: Option<Span>,
     pub(super) stale: Option<Span>,
+    pub(super) watchdog_device: Option<Placed<String>>,
     pub(super) open_taps: Vec<Placed<PortName>>,
     pub(super) layers_max: Option<u64>,
     pub(super) level_max: Option<u64>,
@@ -93,6 +94,9 @@ fn read_halt(mut keys: Keys<'_, '_>, parts: &mut Parts<'_, '_>, findings: &mut F
     }
     parts.hold = keys.take("hold").and_then(|v| doc::span(v, true, findings));
     parts.stale = keys.take("stale").and_then(|v| doc::span(v, true, findings));
+    parts.watchdog_device = keys
+        .take("watchdog_device")
+        .and_then(|v| doc::text(v, "the path of a watchdog device such as \"/dev/watchdog\"", findings));
     keys.finish(findings);
 }
 
@@ -148,7 +152,7 @@ fn layer<'t, 's>(value: &'t Spanned<DeValue<'s>>, findings: &mut Findings) -> Op
     });
     let priority = keys
         .take("priority")
-        .and_then(|v| doc::whole(v, 1, 99, findings))
+        .and_then(|v| doc::whole(v, 1, PRIORITY_MAX, findings))
         .map(|p| p as u8);
     let cpu = keys
         .take("cpu")
@@ -330,6 +334,9 @@ fn name(value: &Spanned<DeValue<'_>>, expected: &str, findings: &mut Findings) -
     check_name(&given, findings);
     Some(given)
 }
+
+/// Highest priority of a layer: above it come the daemon's watchdog at 98, and the kernel's own threads at 99.
+const PRIORITY_MAX: u64 = 97;
 
 /// Longest name: it becomes part of a shared-memory service name, which has 255 characters.
 pub(super) const NAME_MAX: usize = 48;
