@@ -3,12 +3,15 @@
 //!
 //! Must never know a behaviour; layers come to it as checked wiring and boxes that step.
 
+pub mod admission;
 pub mod alloc;
 pub mod body;
+pub mod callers;
 pub mod control;
 pub mod events;
 pub mod executor;
 pub mod feeder;
+mod flow;
 pub mod gate;
 pub mod halt;
 pub mod machine;

@@ -20,7 +20,7 @@ use crate::body::{self, MotorEnd, Place, World, WorldEnd};
 use crate::executor::gauge::BeatGauge;
 use crate::halt::HaltChannel;
 use crate::motor::Motor;
-use crate::watchdog::{Strict, Vital, Watchdog};
+use crate::watchdog::{Strict, Thaw, Vital, Watchdog};
 
 /// The kinds that this daemon was built with.
 pub fn kinds() -> Kinds {
@@ -189,6 +189,7 @@ impl Machine {
         let halt = Arc::new(HaltChannel::default());
         let vital = stations.iter().filter(|s| s.spec.vital);
         let strict = stations.iter().filter(|s| s.spec.overrun == Overrun::Halt);
+        let period = creature.body.as_ref().map_or(Span::ZERO, |b| b.period);
         let watchdog = Watchdog {
             vital: vital
                 .map(|s| Vital::new(&s.spec.name, s.gauge.clone(), s.spec.period))
@@ -203,6 +204,7 @@ impl Machine {
             stale: creature.halt.stale,
             channel: halt.clone(),
             progress: Arc::default(),
+            thaw: Thaw::new(period),
         };
         Machine {
             creature,

@@ -8,6 +8,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use clap::Parser;
+use daemon::admission::Admission;
 use daemon::control::{self, Control};
 use daemon::feeder::Fed;
 use daemon::machine::{Machine, cells_apart, kinds};
@@ -140,7 +141,7 @@ fn run(options: &Options, creature: Creature) -> Result<(), String> {
     let running = running::start(&name, machine, owned, domain, body, fed)
         .map_err(|e| format!("starting threads: {e}"))?;
     let control =
-        Control::open(&name, running.shared.clone()).map_err(|e| format!("the control socket: {e}"));
+        Control::open(&name, running.shared.clone(), Admission::default()).map_err(|e| format!("the control socket: {e}"));
     let page = serve_page(options, &running);
     let result = control.and_then(|control| page.map(|page| (control, page)));
     let result = result.map(|(control, page)| {

@@ -20,7 +20,7 @@ use crate::executor::gauge::BeatGauge;
 use crate::gate::{Causes, Gate, Passage, Seen};
 use crate::halt::HaltChannel;
 use crate::segment;
-use crate::watchdog::Vital;
+use crate::watchdog::{Thaw, Vital};
 
 /// The motor unit.
 #[derive(Debug)]
@@ -34,6 +34,7 @@ pub struct Motor {
     reflexes: Vec<Reader>,
     vital: Vec<Arc<BeatGauge>>,
     watchdog: Vital,
+    thaw: Thaw,
     gate: Gate,
     channel: Arc<HaltChannel>,
     resets: u64,
@@ -96,6 +97,7 @@ impl Motor {
                 .collect(),
             vital: vital.map(|(_, gauge)| gauge.clone()).collect(),
             watchdog: Vital::new("watchdog", channel.watchdog.clone(), body.period),
+            thaw: Thaw::new(body.period),
             gate: Gate::new(creature.halt.stale, creature.halt.hold),
             channel,
             resets: 0,
@@ -179,6 +181,7 @@ impl Motor {
         self.faults = faults;
         let began = |gauge: &BeatGauge| gauge.counts().beats > 0;
         let vital_began = self.vital.iter().all(|v| began(v)) && began(&self.watchdog.gauge);
+        let standing = self.standing(now);
         Seen {
             now,
             oldest_command,
@@ -190,16 +193,17 @@ impl Motor {
                 .map(|r| r.stamp.min(now))
                 .max(),
             vital_began,
-            standing: self.standing(now),
+            standing,
             latched: self.channel.latched(),
             reset: self.channel.reset_asked(&mut self.resets),
         }
     }
 
     /// Causes that stand now: what the watchdog sees, and what can be seen from here alone.
-    fn standing(&self, now: Time) -> Causes {
+    fn standing(&mut self, now: Time) -> Causes {
         let mut standing = self.channel.watched();
-        if self.watchdog.is_late(now) {
+        let thawed = self.thaw.at(now);
+        if self.watchdog.is_late(now, thawed) {
             standing = standing.with(Causes::WATCHDOG);
         }
         // A pulse from the future is no pulse: its writer's clock, or the cell, is wrong.

@@ -4,10 +4,11 @@
 //! Must never wait for a layer process, nor let anything it says reach a real-time thread unchecked.
 
 use std::collections::HashMap;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};
 
 use afsm::layer::{Command, Hand};
-use ipc::clock::Span;
+use ipc::clock::{self, Span, Time};
 use ipc::control::{Plug, PlugTap};
 use ipc::message::Kind;
 use ipc::wire::iceoryx::Domain;
@@ -16,6 +17,34 @@ use ipc::wiring::creature::{Creature, How};
 use ipc::wiring::directory::Directory;
 
 use crate::events::Events;
+use crate::flow::Flow;
+
+/// Most messages a second of an attached tap, unless the creature file says otherwise: a layer of 1 ms.
+pub const MESSAGES_MAX: u32 = 1_000;
+
+/// How long a layer that broke the policy is kept out.
+pub const BARRED: Span = Span::secs(10);
+
+/// Most layers kept out at once: as many as may be attached.
+const BARRED_MAX: usize = 32;
+
+/// Longest name of a port or an owner: two names of 48 characters and what joins them.
+const PORT_NAME_MAX: usize = 160;
+
+/// Most modules of an attached layer: they are only drawn.
+const MODULES_MAX: usize = 512;
+
+/// Most taps of an attached layer: as many as a layer takes up between two beats.
+const PLUG_TAPS_MAX: usize = 64;
+
+/// An attached layer, as its connection knows it.
+#[derive(Debug)]
+pub struct Joined {
+    /// Its number.
+    pub number: u32,
+    /// Set when it is let go against its will.
+    pub dismissed: Arc<AtomicBool>,
+}
 
 /// A tap that an attached layer holds.
 #[derive(Clone, Debug)]
@@ -39,6 +68,9 @@ pub struct Attached {
     pub page: Arc<Page>,
     /// Its taps.
     pub taps: Vec<AttachedTap>,
+    /// Set when it is let go against its will: its connection is closed then.
+    pub dismissed: Arc<AtomicBool>,
+    flows: Vec<Flow>,
 }
 
 /// Where a port of the creature is found: which layer, and which register or outlet of it.
@@ -52,6 +84,8 @@ pub struct Plugs {
     outputs: Places,
     state: Mutex<State>,
     events: Arc<Events>,
+    /// Most messages a second of an attached tap.
+    messages_max: u32,
 }
 
 #[derive(Default)]
@@ -60,6 +94,8 @@ struct State {
     attached: Vec<Attached>,
     last: u32,
     version: u64,
+    /// Layers that broke the policy, by name, and until when they are not let in again.
+    barred: Vec<(String, Time)>,
 }
 
 impl Plugs {
@@ -93,6 +129,7 @@ impl Plugs {
             outputs,
             state,
             events,
+            messages_max: MESSAGES_MAX,
         }
     }
 
@@ -136,7 +173,7 @@ impl Plugs {
     ///
     /// # Errors
     /// Every reason why not.
-    pub fn attach(&self, plug: Plug, domain: &Domain) -> Result<u32, Vec<String>> {
+    pub fn attach(&self, plug: Plug, domain: &Domain) -> Result<Joined, Vec<String>> {
         let result = self.try_attach(&plug, domain);
         let (layer, pid) = (plug.layer.clone(), plug.pid);
         match &result {
@@ -153,7 +190,7 @@ impl Plugs {
         result
     }
 
-    fn try_attach(&self, plug: &Plug, domain: &Domain) -> Result<u32, Vec<String>> {
+    fn try_attach(&self, plug: &Plug, domain: &Domain) -> Result<Joined, Vec<String>> {
         let reasons = self.reasons_against(plug);
         if !reasons.is_empty() {
             return Err(reasons);
@@ -168,6 +205,9 @@ impl Plugs {
             )]);
         }
         let mut state = self.lock();
+        if state.attached.len() >= self.creature.outsiders.layers_max {
+            return Err(vec!["the most layers allowed are attached".into()]);
+        }
         if state.attached.iter().any(|a| a.plug.layer == plug.layer) {
             return Err(vec![format!("a layer {:?} is attached already", plug.layer)]);
         }
@@ -177,14 +217,18 @@ impl Plugs {
         for tap in &plug.taps {
             taps.push(self.join(&mut state, number, plug, tap, &page)?);
         }
+        let dismissed = Arc::new(AtomicBool::new(false));
+        let now = clock::monotonic();
         state.attached.push(Attached {
             number,
             plug: plug.clone(),
             page,
+            flows: taps.iter().map(|t| Flow::new(&t.reader, now)).collect(),
             taps,
+            dismissed: dismissed.clone(),
         });
         state.version += 1;
-        Ok(number)
+        Ok(Joined { number, dismissed })
     }
 
     fn join(
@@ -230,6 +274,43 @@ impl Plugs {
         })
     }
 
+    /// Looks whether the attached layers keep to the policy: one that floods a tap is let go and not let in again
+    /// for a while; one whose messages are none is named. Call it ten times a second.
+    pub fn police(&self, now: Time) {
+        let mut breaches = Vec::new();
+        {
+            let state = &mut *self.lock();
+            state.barred.retain(|(_, until)| *until > now);
+            for attached in &mut state.attached {
+                for (tap, flow) in attached.taps.iter().zip(&mut attached.flows) {
+                    let layer = &attached.plug.layer;
+                    if let Some(text) = flow.garbage(&tap.gauge, now) {
+                        let text = format!("policy breach: layer {layer}: {text} on {}", tap.tap.from);
+                        breaches.push((None, layer.clone(), text));
+                    }
+                    if let Some(text) = flow.flood(tap.reader.number(), self.messages_max, now) {
+                        let text = format!("policy breach: layer {layer} floods {}: {text}", tap.tap.from);
+                        attached.dismissed.store(true, Ordering::Relaxed);
+                        breaches.push((Some(attached.number), layer.clone(), text));
+                        break;
+                    }
+                }
+            }
+            let flooding = breaches.iter().filter(|(number, ..)| number.is_some());
+            for (_, layer, _) in flooding {
+                if state.barred.len() < BARRED_MAX {
+                    state.barred.push((layer.clone(), now + BARRED));
+                }
+            }
+        }
+        for (number, layer, text) in breaches {
+            self.events.note("policy", Some(&layer), text);
+            if let Some(number) = number {
+                self.detach(number, "was let go");
+            }
+        }
+    }
+
     /// Lets an attached layer go, for the reason given.
     pub fn detach(&self, number: u32, why: &str) {
         let mut state = self.lock();
@@ -269,6 +350,18 @@ impl Plugs {
             taken || attached.iter().any(|a| a.plug.layer == plug.layer),
             format!("there is a layer {:?} already", plug.layer),
         );
+        let barred = self.lock().barred.iter().any(|(name, _)| *name == plug.layer);
+        against(barred, format!("layer {:?} broke the policy; it may come back {BARRED} after", plug.layer));
+        against(plug.period == Span::ZERO, "a layer needs a period".into());
+        let longest = plug.outputs.iter().map(|o| o.name.len()).max().unwrap_or(0);
+        against(
+            longest > PORT_NAME_MAX || plug.owner.len() > PORT_NAME_MAX,
+            "its names are too long".into(),
+        );
+        against(
+            plug.modules.len() > MODULES_MAX || plug.taps.len() > PLUG_TAPS_MAX,
+            "too many modules or taps".into(),
+        );
         against(
             attached.len() >= outsiders.layers_max,
             format!("{} layers are attached, the most allowed", attached.len()),
@@ -285,7 +378,7 @@ impl Plugs {
             "too many outputs".into(),
         );
         against(
-            plug.layer.len() > 48 || plug.layer.is_empty(),
+            !crate::is_name(&plug.layer),
             "the layer's name is not one".into(),
         );
         for tap in &plug.taps {

@@ -474,6 +474,7 @@ impl Watcher {
             }
         }
         self.note_halts();
+        self.shared.plugs.police(now);
         let status = self.status(now);
         *self
             .shared
@@ -552,6 +553,7 @@ impl Watcher {
                 taps.push(status::tap(&watched, now));
             }
         }
+        self.rates.keep_only(&wires);
         let (causes, since) = self.shared.halt.decided();
         let events = self.shared.events.after(0);
         let newest: Vec<_> = events.iter().rev().take(50).rev().collect();

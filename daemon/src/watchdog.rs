@@ -50,10 +50,11 @@ impl Vital {
         }
     }
 
-    /// Whether it has missed its beats. What never beat is not late: it has not begun.
-    pub fn is_late(&self, now: Time) -> bool {
+    /// Whether it has missed its beats; `thawed` is when this process last came out of a freeze. What never
+    /// beat is not late: it has not begun.
+    pub fn is_late(&self, now: Time, thawed: Time) -> bool {
         let counts = self.gauge.counts();
-        counts.beats > 0 && now.since(counts.last) > self.late
+        counts.beats > 0 && now.since(counts.last.max(thawed)) > self.late
     }
 }
 
@@ -70,9 +71,40 @@ pub struct Strict {
 impl Strict {
     /// A beat that ended at e was due at e or before; the next is due a period later at most, and has a
     /// period to run.
-    fn overruns(&self, now: Time) -> bool {
+    fn overruns(&self, now: Time, thawed: Time) -> bool {
         let counts = self.gauge.counts();
-        counts.beats > 0 && now.since(counts.last) > Span(2 * self.period.0)
+        counts.beats > 0 && now.since(counts.last.max(thawed)) > Span(2 * self.period.0)
+    }
+}
+
+/// Notices when the whole process was frozen (SIGSTOP, a debugger, a suspended host): somebody who looks after
+/// others must not blame them for what it slept through itself. Commands have gone stale meanwhile, which
+/// halts the body at both ends; whoever does not beat again in time after the thaw is late then.
+#[derive(Clone, Copy, Debug)]
+pub struct Thaw {
+    /// Longest time between two looks that is no freeze.
+    gap: Span,
+    last: Time,
+    thawed: Time,
+}
+
+impl Thaw {
+    /// For somebody who looks every `period`.
+    pub fn new(period: Span) -> Thaw {
+        Thaw {
+            gap: Span((2 * period.0).max(VITAL_LATE_MIN.0)),
+            last: Time::ZERO,
+            thawed: Time::ZERO,
+        }
+    }
+
+    /// When the last freeze ended, as of `now`.
+    pub fn at(&mut self, now: Time) -> Time {
+        if now.since(self.last) > self.gap {
+            self.thawed = now;
+        }
+        self.last = now;
+        self.thawed
     }
 }
 
@@ -91,20 +123,23 @@ pub struct Watchdog {
     pub channel: Arc<HaltChannel>,
     /// Goes up with every look that finds everybody vital in time.
     pub progress: Arc<AtomicU64>,
+    /// Notices freezes.
+    pub thaw: Thaw,
 }
 
 impl Watchdog {
     /// Looks at everything.
-    pub fn look(&self, now: Time) {
+    pub fn look(&mut self, now: Time) {
+        let thawed = self.thaw.at(now);
         let mut standing = Causes::NONE;
         let mut stands = |stands: bool, cause: Causes| {
             if stands {
                 standing = standing.with(cause);
             }
         };
-        let late = self.vital.iter().any(|v| v.is_late(now));
+        let late = self.vital.iter().any(|v| v.is_late(now, thawed));
         stands(late, Causes::VITAL);
-        stands(self.strict.iter().any(|s| s.overruns(now)), Causes::OVERRUN);
+        stands(self.strict.iter().any(|s| s.overruns(now, thawed)), Causes::OVERRUN);
         for (reader, limits) in &self.commands {
             // None yet, or being written just now: the gate knows whether one is missing.
             let Some(reading) = reader.read() else { continue };
@@ -150,6 +185,7 @@ mod tests {
             stale: Span::millis(100),
             channel: Arc::default(),
             progress: Arc::default(),
+            thaw: Thaw::new(Span::millis(20)),
         };
         (watchdog, page.writer(0, Kind::Number).expect("it is free"))
     }
@@ -160,25 +196,39 @@ mod tests {
 
     #[test]
     fn a_late_vital_layer_stands_and_stops_the_progress() {
-        let (watchdog, _writer) = watchdog();
-        watchdog.look(ms(1000));
-        assert_eq!((watchdog.channel.watched(), progress(&watchdog)), (Causes::NONE, 1));
+        let (mut watchdog, _writer) = watchdog();
+        let gauge = watchdog.vital[0].gauge.clone();
+        let mut look = |now| {
+            watchdog.look(ms(now));
+            (watchdog.channel.watched(), progress(&watchdog))
+        };
+        assert_eq!(look(980), (Causes::NONE, 1));
+        gauge.beat(ms(1000));
+        assert_eq!(look(1000), (Causes::NONE, 2));
+        assert_eq!(look(1020), (Causes::NONE, 3));
+        assert_eq!(look(1021), (Causes::OVERRUN, 4));
+        assert_eq!(look(1051), (Causes::OVERRUN.with(Causes::VITAL), 4));
+        gauge.beat(ms(1052));
+        assert_eq!(look(1053), (Causes::NONE, 5));
+    }
+
+    #[test]
+    fn after_a_freeze_everybody_gets_the_time_it_had_before() {
+        let (mut watchdog, _writer) = watchdog();
         watchdog.vital[0].gauge.beat(ms(1000));
-        watchdog.look(ms(1020));
-        assert_eq!((watchdog.channel.watched(), progress(&watchdog)), (Causes::NONE, 2));
-        watchdog.look(ms(1021));
-        assert_eq!(watchdog.channel.watched(), Causes::OVERRUN);
-        watchdog.look(ms(1051));
-        assert_eq!(watchdog.channel.watched(), Causes::OVERRUN.with(Causes::VITAL));
-        assert_eq!(progress(&watchdog), 3);
-        watchdog.vital[0].gauge.beat(ms(1052));
-        watchdog.look(ms(1053));
-        assert_eq!((watchdog.channel.watched(), progress(&watchdog)), (Causes::NONE, 4));
+        watchdog.look(ms(1000));
+        // A second in which nobody ran, the watchdog included.
+        watchdog.look(ms(2000));
+        assert_eq!(watchdog.channel.watched(), Causes::NONE);
+        watchdog.look(ms(2040));
+        watchdog.look(ms(2051));
+        let both = Causes::OVERRUN.with(Causes::VITAL);
+        assert_eq!(watchdog.channel.watched(), both, "but it did not come back");
     }
 
     #[test]
     fn commands_that_are_stale_or_no_numbers_stand() {
-        let (watchdog, mut writer) = watchdog();
+        let (mut watchdog, mut writer) = watchdog();
         let mut words = [0.0; WORDS_MAX];
         writer.write(ms(1000), &words);
         watchdog.look(ms(1100));

@@ -5,14 +5,14 @@
 //!
 //! Must never carry wire messages: those go through shared memory.
 
-use std::io::{self, BufRead, BufReader, Read, Write};
+use std::io::{self, BufRead, BufReader, Write};
 use std::os::unix::net::UnixStream;
 use std::path::PathBuf;
 use std::time::Duration;
 
 use serde::{Deserialize, Serialize};
 
-use crate::clock::Span;
+use crate::clock::{self, Span, Time};
 use crate::wire::LAYOUT;
 use crate::wire::iceoryx::ICEORYX2;
 use crate::wiring::creature::How;
@@ -23,6 +23,9 @@ pub const PROTOCOL: u32 = 1;
 
 /// Longest line: the directory of a creature of 1,000 modules takes about 400 KiB.
 pub const LINE_MAX: usize = 4 << 20;
+
+/// Longest line that a daemon takes: the manifest of a layer of 500 modules takes about 200 KiB.
+pub const REQUEST_MAX: usize = 256 << 10;
 
 /// What must be equal at both ends.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -187,8 +190,11 @@ pub struct Connection {
     reader: BufReader<UnixStream>,
     writer: UnixStream,
     line_max: usize,
-    /// The beginning of a line whose end has not come yet.
+    /// How long a line may take from its first byte to its end.
+    line_time: Option<Span>,
+    /// The beginning of a line whose end has not come yet, and when that began.
     begun: Vec<u8>,
+    begun_at: Time,
 }
 
 impl Connection {
@@ -202,7 +208,9 @@ impl Connection {
             reader: BufReader::new(stream),
             writer,
             line_max: LINE_MAX,
+            line_time: None,
             begun: Vec::new(),
+            begun_at: Time::ZERO,
         })
     }
 
@@ -210,6 +218,14 @@ impl Connection {
     #[must_use]
     pub fn with_lines_up_to(mut self, bytes: usize) -> Connection {
         self.line_max = bytes;
+        self
+    }
+
+    /// The same, but a line that takes longer than `span` from its first byte to its end is refused, however
+    /// steadily its bytes drip in. With a time-out on the socket it is noticed when nothing comes as well.
+    #[must_use]
+    pub fn with_lines_within(mut self, span: Span) -> Connection {
+        self.line_time = Some(span);
         self
     }
 
@@ -229,18 +245,29 @@ impl Connection {
     /// When the line is too long or is not such a document. When the time-out of the socket is reached
     /// ([`timed_out`]) it can be called again: what came so far is kept.
     pub fn receive<T: for<'d> Deserialize<'d>>(&mut self) -> io::Result<Option<T>> {
-        let room = (self.line_max - self.begun.len()) as u64;
-        let n = (&mut self.reader).take(room).read_until(b'\n', &mut self.begun)?;
-        if n == 0 && self.begun.is_empty() {
-            return Ok(None);
+        loop {
+            if self.is_overdue() {
+                return Err(invalid("a line without an end"));
+            }
+            let come = self.reader.fill_buf()?;
+            if come.is_empty() && self.begun.is_empty() {
+                return Ok(None);
+            }
+            if self.begun.is_empty() {
+                self.begun_at = clock::monotonic();
+            }
+            let end = come.iter().position(|b| *b == b'\n');
+            let taken = end.map_or(come.len(), |end| end + 1);
+            if come.is_empty() || self.begun.len() + taken > self.line_max {
+                return Err(invalid("half a line, or one too long"));
+            }
+            self.begun.extend_from_slice(&come[..taken]);
+            self.reader.consume(taken);
+            if end.is_some() {
+                break;
+            }
         }
         let line = std::mem::take(&mut self.begun);
-        if line.last() != Some(&b'\n') {
-            return Err(io::Error::new(
-                io::ErrorKind::InvalidData,
-                "half a line, or one too long",
-            ));
-        }
         serde_json::from_slice(&line)
             .map(Some)
             .map_err(|e| io::Error::new(io::ErrorKind::InvalidData, e))
@@ -256,15 +283,19 @@ impl Connection {
             .ok_or_else(|| io::Error::new(io::ErrorKind::UnexpectedEof, "the daemon closed the connection"))
     }
 
-    /// Whether part of a line has come and its end has not.
-    pub fn in_mid_line(&self) -> bool {
-        !self.begun.is_empty()
+    fn is_overdue(&self) -> bool {
+        let limit = self.line_time.filter(|_| !self.begun.is_empty());
+        limit.is_some_and(|limit| clock::monotonic().since(self.begun_at) > limit)
     }
 
     /// The socket itself.
     pub fn socket(&self) -> &UnixStream {
         &self.writer
     }
+}
+
+fn invalid(what: &str) -> io::Error {
+    io::Error::new(io::ErrorKind::InvalidData, what)
 }
 
 /// Whether a receive only ran into the time-out of its socket.

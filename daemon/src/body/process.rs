@@ -181,7 +181,7 @@ fn run(body: Body) -> Result<(), String> {
     }
     let keeper = keep(owned, house.clone()).map_err(|e| format!("starting a thread: {e}"))?;
     let caller = accept(listener, house.clone()).map_err(|e| format!("starting a thread: {e}"))?;
-    eprintln!("body {name}: a {} waits for a daemon", kind.declaration.name);
+    eprintln!("body {name}: kind {}, halted, waits for a daemon", kind.declaration.name);
     watch(&name, &page, &signalled, limit);
     leaving.store(true, Ordering::Relaxed);
     std::thread::sleep(STANDSTILL);
