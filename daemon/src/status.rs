@@ -8,7 +8,7 @@ use hdrhistogram::Histogram;
 use ipc::clock::{self, Span, Time};
 use ipc::message::Kind;
 use ipc::tap::Window;
-use ipc::wire::{Reader, TapGauge};
+use ipc::wire::{AHEAD_MAX, Reader, TapGauge};
 use ipc::wiring::creature::How;
 use rtrb::Consumer;
 use serde_json::{Value, json};
@@ -180,7 +180,9 @@ pub struct WatchedTap {
 
 /// Shows a tap: whether it holds, and for how long still.
 pub fn tap(t: &WatchedTap, now: Time) -> Value {
-    let window = t.reader.read().map(|r| Window {
+    // What is stamped in the future is no message: see the register.
+    let reading = t.reader.read().filter(|r| r.stamp <= now + AHEAD_MAX);
+    let window = reading.map(|r| Window {
         stamp: r.stamp.min(now),
         time_constant: t.time_constant,
     });
