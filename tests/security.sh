@@ -50,7 +50,8 @@ for who in "as $stranger" member; do
     may_not "$who: removes $file" $who sh -c "rm -f '$file' && [ ! -e '$file' ]"
   done
 done
-ctl status | grep -q '^halt: \(no\|reflex\)' || fail "the creature must be unharmed"
+status=$(ctl status)
+grep -q '^halt: \(no\|reflex\)' <<<"$status" || fail "the creature must be unharmed"
 may "the same user halts it" as $owner "$work/subsumectl" --creature guarded halt
 may "the same user resets it" as $owner "$work/subsumectl" --creature guarded reset
 may "the same user stops the daemon" as $owner kill -STOP $daemon
