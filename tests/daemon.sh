@@ -3,7 +3,7 @@
 # the real-time threads make no system call but their sleep, allocate nothing and take no page fault.
 #
 #   tests/daemon.sh [FOLDER-OF-BINARIES]      default: target/release
-# Needs strace (ptrace allowed) for the system calls and python3 for nothing; says what it skipped.
+# Needs strace (ptrace allowed) for the system calls, chromium for the page; says what it skipped.
 set -euo pipefail
 bin=$(realpath "${1:-target/release}")
 work=$(mktemp -d)
@@ -40,7 +40,6 @@ ctl status >/dev/null || fail "the daemon did not come up"
 
 # Threads that are real-time by name: layers, the motor unit and the watchdog.
 threads() { for t in /proc/$daemon/task/*; do case $(cat "$t/comm") in avoid|motor|watchdog) basename "$t";; esac; done; }
-faults() { for t in $(threads); do awk '{print $10 + $12}' "/proc/$daemon/task/$t/stat"; done | paste -sd+ | bc 2>/dev/null || echo 0; }
 faults() { local sum=0; for t in $(threads); do sum=$((sum + $(awk '{print $10 + $12}' "/proc/$daemon/task/$t/stat"))); done; echo $sum; }
 sleep 1
 before=$(faults)
@@ -95,6 +94,11 @@ grep -q -- '--page-port' "$work/taken.log" || fail "a taken port must name the o
 "$bin/subsumed" --name outside >"$work/twice.log" 2>&1; [ $? -eq 1 ] || fail "a second daemon of one name must be refused"
 set -e
 
+# Ctrl-C first, on a daemon of its own; SIGTERM on the one that was watched.
+"$bin/subsumed" --name ctrlc --no-page >"$work/ctrlc.log" 2>&1 & second=$!
+for _ in $(seq 100); do "$bin/subsumectl" --creature ctrlc status >/dev/null 2>&1 && break; sleep 0.1; done
+kill -INT $second; wait $second || fail "Ctrl-C must end with status 0"
+grep -q 'the body is halted: .*shutdown' "$work/ctrlc.log" || fail "the body must be halted before Ctrl-C ends the daemon"
 kill -TERM $daemon; wait $daemon || fail "SIGTERM must end with status 0"
 daemon=""
 grep -q 'the body is halted: .*shutdown' "$work/daemon.log" || fail "the body must be halted before the daemon leaves"

@@ -12,7 +12,11 @@ struct Bench;
 
 impl World for Bench {
     fn tick(&mut self, _now: Time, link: &mut WorldEnd) {
-        println!("turn {:+.2} rad/s, forward {:+.2} m/s", link.motion(1)[0], link.motion(2)[0]);
+        println!(
+            "turn {:+.2} rad/s, forward {:+.2} m/s",
+            link.motion(1)[0],
+            link.motion(2)[0]
+        );
     }
 }
 

@@ -6,6 +6,7 @@
 //! Must never believe what a caller says of itself.
 
 use ipc::control::Peer;
+use ipc::wiring::creature::{Account, Outsiders};
 
 /// Who may call.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -17,6 +18,41 @@ pub struct Admission {
 }
 
 impl Admission {
+    /// Whom a creature file names.
+    ///
+    /// # Errors
+    /// Every user or group that this host does not know.
+    pub fn of(outsiders: &Outsiders) -> Result<Admission, String> {
+        let mut unknown = Vec::new();
+        let mut numbers = |accounts: &[Account], what: &str, file: &str| -> Vec<u32> {
+            let known = std::fs::read_to_string(file).unwrap_or_default();
+            let number = |account: &Account| match account {
+                Account::Id(id) => Some(*id),
+                Account::Name(name) => listed(&known, name),
+            };
+            let found = accounts.iter().filter_map(|account| {
+                let found = number(account);
+                if found.is_none() {
+                    unknown.push(format!(
+                        "this host has no {what} {:?} (see {file})",
+                        account.to_string()
+                    ));
+                }
+                found
+            });
+            found.collect()
+        };
+        let admission = Admission {
+            users: numbers(&outsiders.users, "user", "/etc/passwd"),
+            groups: numbers(&outsiders.groups, "group", "/etc/group"),
+        };
+        if unknown.is_empty() {
+            Ok(admission)
+        } else {
+            Err(format!("[outsiders]: {}", unknown.join("; ")))
+        }
+    }
+
     /// Whether `peer` may call.
     pub fn admits(&self, peer: Peer) -> bool {
         peer.is_us() || self.users.contains(&peer.user) || self.is_member(peer)
@@ -28,7 +64,9 @@ impl Admission {
             return false;
         }
         self.groups.contains(&peer.group)
-            || supplementary(peer.pid).iter().any(|group| self.groups.contains(group))
+            || supplementary(peer.pid)
+                .iter()
+                .any(|group| self.groups.contains(group))
     }
 
     /// The mode of the control socket: nobody else can even connect who need not.
@@ -39,6 +77,13 @@ impl Admission {
             0o666
         }
     }
+}
+
+/// The number of `name` in a file of the form of `/etc/passwd` and `/etc/group`.
+fn listed(file: &str, name: &str) -> Option<u32> {
+    let fields = file.lines().map(|line| line.split(':').collect::<Vec<_>>());
+    let mut named = fields.filter(|fields| fields.first() == Some(&name));
+    named.find_map(|fields| fields.get(2)?.parse().ok())
 }
 
 /// Supplementary groups of a process; none if it is gone.
@@ -68,6 +113,30 @@ mod tests {
         assert!(admission.admits(peer(us, 12_345)) && admission.admits(peer(0, 0)));
         assert!(!admission.admits(peer(us + 54_321, 0)));
         assert_eq!(admission.socket_mode(), 0o600);
+    }
+
+    #[test]
+    fn names_are_looked_up_and_unknown_ones_refused_together() {
+        let mut outsiders = Outsiders {
+            read: ipc::wiring::creature::Reads::All,
+            tap: Vec::new(),
+            users: vec![Account::Name("root".into()), Account::Id(1234)],
+            groups: vec![Account::Name("root".into())],
+            layers_max: 1,
+            level_max: 1,
+            time_constant_min: ipc::clock::Span::ZERO,
+            time_constant_max: ipc::clock::Span::ZERO,
+            messages_max: 1,
+        };
+        let admission = Admission::of(&outsiders).expect("every host knows root");
+        assert_eq!((admission.users, admission.groups), (vec![0, 1234], vec![0]));
+        outsiders.users.push(Account::Name("nobody-of-that-name".into()));
+        outsiders.groups.push(Account::Name("no-such-group".into()));
+        let refusal = Admission::of(&outsiders).expect_err("they are unknown");
+        assert!(
+            refusal.contains("nobody-of-that-name") && refusal.contains("no-such-group"),
+            "{refusal}"
+        );
     }
 
     #[test]

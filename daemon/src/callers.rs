@@ -124,9 +124,11 @@ mod tests {
         }
         ends[1].0.speaks(Time(50));
         callers.make_room(Time(100));
-        let open = ends
-            .iter_mut()
-            .map(|(_, _, theirs)| theirs.read(&mut [0]).is_err_and(|e| e.kind() == io::ErrorKind::WouldBlock));
+        let open = ends.iter_mut().map(|(_, _, theirs)| {
+            theirs
+                .read(&mut [0])
+                .is_err_and(|e| e.kind() == io::ErrorKind::WouldBlock)
+        });
         assert_eq!(open.collect::<Vec<_>>(), [true, true, false]);
     }
 }

@@ -173,9 +173,14 @@ fn answer_all(stream: UnixStream, caller: &Caller, shared: &Shared, admission: &
     stream.set_write_timeout(Some(ANSWER_TIME))?;
     let peer = Peer::of(&stream)?;
     let connection = Connection::over(stream)?;
-    let mut connection = connection.with_lines_up_to(REQUEST_MAX).with_lines_within(LINE_TIME);
+    let mut connection = connection
+        .with_lines_up_to(REQUEST_MAX)
+        .with_lines_within(LINE_TIME);
     if !admission.admits(peer) {
-        let text = format!("user {} (pid {}) was turned away: the creature does not name it", peer.user, peer.pid);
+        let text = format!(
+            "user {} (pid {}) was turned away: the creature does not name it",
+            peer.user, peer.pid
+        );
         shared.events.note("caller", None, text);
         let reasons = vec![format!("user {} may not speak to this creature", peer.user)];
         return connection.send(&Reply::Refused { reasons });
@@ -241,7 +246,10 @@ fn converse(
             // The process that speaks is the one whose life counts, whatever it says.
             Request::Plug(plug) => {
                 let pid = peer.pid.unsigned_abs();
-                match shared.plugs.attach(ipc::control::Plug { pid, ..plug }, &shared.domain) {
+                match shared
+                    .plugs
+                    .attach(ipc::control::Plug { pid, ..plug }, &shared.domain)
+                {
                     Ok(joined) => {
                         let number = joined.number;
                         caller.stays();

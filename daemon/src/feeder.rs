@@ -49,7 +49,10 @@ impl Fed {
         let opened = File::options().write(true).custom_flags(nonblocking).open(path);
         let device = opened.map_err(|e| {
             let path = path.display();
-            io::Error::new(e.kind(), format!("the watchdog device {path} cannot be written: {e}"))
+            io::Error::new(
+                e.kind(),
+                format!("the watchdog device {path} cannot be written: {e}"),
+            )
         })?;
         Ok(Fed { device: Some(device) })
     }
@@ -57,12 +60,16 @@ impl Fed {
     fn meal(&mut self) -> io::Result<()> {
         // Whoever does not listen is not there: without NOTIFY_SOCKET this does nothing.
         let _ = sd_notify::notify(&[NotifyState::Watchdog]);
-        self.device.as_mut().map_or(Ok(()), |device| device.write_all(b"."))
+        self.device
+            .as_mut()
+            .map_or(Ok(()), |device| device.write_all(b"."))
     }
 
     /// Sets the device at rest: the body stands.
     fn farewell(&mut self) -> io::Result<()> {
-        self.device.as_mut().map_or(Ok(()), |device| device.write_all(b"V"))
+        self.device
+            .as_mut()
+            .map_or(Ok(()), |device| device.write_all(b"V"))
     }
 }
 

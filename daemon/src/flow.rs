@@ -44,7 +44,10 @@ impl Flow {
         // A layer of just that rate, seen a beat early and a beat late.
         let allowed = u64::from(most) + u64::from(most) / 10 + 2;
         if messages > allowed {
-            return Some(format!("{messages} messages in {:.1} s, {most} a second are allowed", passed.seconds()));
+            return Some(format!(
+                "{messages} messages in {:.1} s, {most} a second are allowed",
+                passed.seconds()
+            ));
         }
         if passed >= WINDOW {
             (self.first, self.since) = (number, now);
@@ -60,7 +63,9 @@ impl Flow {
             return None;
         }
         (self.faults, self.said) = (faults, Some(now));
-        Some(format!("{new} messages that were none (not a number, out of range, stamped wrongly)"))
+        Some(format!(
+            "{new} messages that were none (not a number, out of range, stamped wrongly)"
+        ))
     }
 }
 
@@ -85,7 +90,11 @@ mod tests {
             assert_eq!(steady.flood(Some(tenth * 10), 100, now), None, "at {tenth}");
         }
         let mut double = flow();
-        let caught = (1..20).find(|tenth| double.flood(Some(tenth * 20), 100, Time(tenth * 100_000_000)).is_some());
+        let caught = (1..20).find(|tenth| {
+            double
+                .flood(Some(tenth * 20), 100, Time(tenth * 100_000_000))
+                .is_some()
+        });
         assert_eq!(caught, Some(6));
     }
 

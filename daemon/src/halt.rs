@@ -104,7 +104,9 @@ impl HaltChannel {
         let standing = self.watched().and(Causes::LATCHED);
         if standing != Causes::NONE {
             let names = standing.names().join(", ");
-            return Err(format!("the cause still stands: {names}; mend it, then reset again"));
+            return Err(format!(
+                "the cause still stands: {names}; mend it, then reset again"
+            ));
         }
         // Only what was seen: an emergency stop of this very moment stays.
         self.latched.fetch_and(!now.0, Ordering::Relaxed);

@@ -17,6 +17,7 @@ pub mod halt;
 pub mod machine;
 pub mod motor;
 pub mod plugs;
+pub mod policy;
 pub mod running;
 pub mod segment;
 pub mod status;

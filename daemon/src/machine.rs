@@ -26,6 +26,7 @@ use crate::watchdog::{Strict, Thaw, Vital, Watchdog};
 pub fn kinds() -> Kinds {
     let bodies = body::BODIES.iter().map(|k| k.declaration);
     Kinds::default()
+        .with(stock::modules())
         .with(allen::MODULES.iter().copied())
         .with_bodies(bodies)
 }
@@ -234,7 +235,9 @@ impl Machine {
         self.watchdog.commands = kind.motion.iter().map(passed).collect();
         // What is passed on is written once a beat; with less patience than two every other look would fail.
         self.watchdog.stale = self.watchdog.stale.max(Span(2 * body.period.0));
-        self.watchdog.vital.push(Vital::new("motor", gauge.clone(), body.period));
+        self.watchdog
+            .vital
+            .push(Vital::new("motor", gauge.clone(), body.period));
         let halt = self.halt.clone();
         let motor = Motor::new(creature, link, sensors, &net, &self.taps, &gauges, halt);
         (motor, gauge)

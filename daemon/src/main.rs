@@ -132,6 +132,7 @@ fn run(options: &Options, creature: Creature) -> Result<(), String> {
         None => output_ports(&creature).count(),
     };
     let owned = domain.own(&name, cells).map_err(|e| e.to_string())?;
+    let admission = Admission::of(&creature.outsiders)?;
     let fed = Fed::open(creature.halt.watchdog_device.as_deref()).map_err(|e| e.to_string())?;
     let machine = match options.body {
         Some(_) => Machine::apart(creature, &kinds(), owned.page().clone()),
@@ -140,8 +141,8 @@ fn run(options: &Options, creature: Creature) -> Result<(), String> {
     let body = options.body.as_deref();
     let running = running::start(&name, machine, owned, domain, body, fed)
         .map_err(|e| format!("starting threads: {e}"))?;
-    let control =
-        Control::open(&name, running.shared.clone(), Admission::default()).map_err(|e| format!("the control socket: {e}"));
+    let control = Control::open(&name, running.shared.clone(), admission)
+        .map_err(|e| format!("the control socket: {e}"));
     let page = serve_page(options, &running);
     let result = control.and_then(|control| page.map(|page| (control, page)));
     let result = result.map(|(control, page)| {

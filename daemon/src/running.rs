@@ -14,7 +14,7 @@ use std::time::Duration;
 use afsm::layer::RunningLayer;
 use ipc::clock::{self, Span, Time};
 use ipc::wire::iceoryx::{Domain, OwnedPage};
-use ipc::wiring::creature::{Creature, Overrun};
+use ipc::wiring::creature::{Creature, Overrun, PRIORITY_MAX, rate_monotonic};
 use ipc::wiring::directory::{Directory, output_ports};
 use serde_json::{Value, json};
 
@@ -24,18 +24,14 @@ use crate::body::{self, World, WorldEnd};
 use crate::events::Events;
 use crate::executor::gauge::BeatGauge;
 use crate::executor::{self, Beating, Beats, Plan, host, host::Refusal};
-use crate::gate::Causes;
 use crate::feeder::{self, Fed};
-use crate::machine::{Apart, Embodied, Machine, Station};
+use crate::gate::Causes;
 use crate::halt::{CauseCount, HaltChannel};
+use crate::machine::{Apart, Embodied, Machine, Station};
 use crate::motor::Motor;
 use crate::plugs::Plugs;
 use crate::status::{self, Rates, Record, Watched, WatchedTap};
 use crate::watchdog::Watchdog;
-
-/// Priority of the motor unit; layers come below it, the shorter the period the higher. Above what ordinary
-/// programs choose.
-const PRIORITY_MAX: u8 = 80;
 
 /// Priority of the watchdog: above every layer whatever its file says (at most 97), below the kernel's own
 /// threads at 99.
@@ -73,7 +69,10 @@ impl Shared {
 
     /// What of the world does not change.
     pub fn floor(&self) -> Value {
-        self.floor.lock().expect("nobody panics holding the floor").clone()
+        self.floor
+            .lock()
+            .expect("nobody panics holding the floor")
+            .clone()
     }
 
     /// Another body was found.
@@ -287,8 +286,7 @@ impl Threads {
         periods.dedup();
         for station in stations {
             let spec = station.spec;
-            let rank = periods.iter().position(|p| *p == spec.period).unwrap_or(0);
-            let monotonic = PRIORITY_MAX.saturating_sub(1 + rank as u8).max(1);
+            let monotonic = rate_monotonic(&periods, spec.period);
             let plan = Plan {
                 name: spec.name,
                 period: spec.period,
@@ -331,7 +329,8 @@ impl Threads {
         }
         let (_, empty) = rtrb::RingBuffer::new(1);
         let samples = std::mem::replace(&mut thread.samples, empty);
-        self.records.push(Record::new(&name, level, period, gauge, samples));
+        self.records
+            .push(Record::new(&name, level, period, gauge, samples));
         self.beating.push(thread);
         Ok(())
     }
@@ -489,14 +488,19 @@ impl Watcher {
         let causes = self.shared.halt.decided().0.without(Causes::REFLEX);
         // Causes that began since the last look, some of them perhaps over again.
         for CauseCount { cause, count, began } in &counts {
-            let before = self.counts.iter().find(|c| c.cause == *cause).map_or(0, |c| c.count);
+            let before = self
+                .counts
+                .iter()
+                .find(|c| c.cause == *cause)
+                .map_or(0, |c| c.count);
             let unseen = count - before - u64::from(causes.has(*cause) && !self.causes.has(*cause));
             if *cause == Causes::REFLEX || before == *count || before == 0 || unseen == 0 {
                 continue;
             }
             let at = began.since(self.began).seconds();
             let name = cause.names().join("");
-            let text = format!("the body was halted for a moment: {name} ({unseen} times, last at {at:.3} s)");
+            let text =
+                format!("the body was halted for a moment: {name} ({unseen} times, last at {at:.3} s)");
             self.shared.events.note("halt", None, text);
         }
         self.counts = counts;

@@ -120,7 +120,8 @@ pub struct Rates {
 impl Rates {
     /// Forgets wires that are no longer there, so that layers that come under ever new names leave nothing.
     pub fn keep_only(&mut self, wires: &[Value]) {
-        let names: std::collections::HashSet<&str> = wires.iter().filter_map(|w| w["wire"].as_str()).collect();
+        let names: std::collections::HashSet<&str> =
+            wires.iter().filter_map(|w| w["wire"].as_str()).collect();
         self.seen.retain(|name, _| names.contains(name.as_str()));
     }
 

@@ -139,7 +139,10 @@ impl Watchdog {
         };
         let late = self.vital.iter().any(|v| v.is_late(now, thawed));
         stands(late, Causes::VITAL);
-        stands(self.strict.iter().any(|s| s.overruns(now, thawed)), Causes::OVERRUN);
+        stands(
+            self.strict.iter().any(|s| s.overruns(now, thawed)),
+            Causes::OVERRUN,
+        );
         for (reader, limits) in &self.commands {
             // None yet, or being written just now: the gate knows whether one is missing.
             let Some(reading) = reader.read() else { continue };
@@ -244,6 +247,10 @@ mod tests {
         words[0] = 0.1;
         writer.write(Time(u64::MAX), &words);
         watchdog.look(ms(2000));
-        assert_eq!(watchdog.channel.watched(), Causes::STALE, "a stamp from the future is stale");
+        assert_eq!(
+            watchdog.channel.watched(),
+            Causes::STALE,
+            "a stamp from the future is stale"
+        );
     }
 }

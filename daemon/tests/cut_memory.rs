@@ -16,7 +16,10 @@ fn segments(stage: &Stage) -> Vec<PathBuf> {
 }
 
 fn cut(segment: &PathBuf) {
-    let file = File::options().write(true).open(segment).expect("the same user may");
+    let file = File::options()
+        .write(true)
+        .open(segment)
+        .expect("the same user may");
     file.set_len(0).expect("the same user may");
 }
 
@@ -43,7 +46,10 @@ fn a_layer_that_cuts_its_own_wires_halts_the_body_too() {
     let before = segments(&stage);
     let mut wander = stage.wander("cut");
     wait_for("wander is attached", || stage.has_layer("cut", "wander"));
-    let of_wander: Vec<PathBuf> = segments(&stage).into_iter().filter(|s| !before.contains(s)).collect();
+    let of_wander: Vec<PathBuf> = segments(&stage)
+        .into_iter()
+        .filter(|s| !before.contains(s))
+        .collect();
     assert_eq!(of_wander.len(), 1, "{of_wander:?}");
     // Awake it would hit the hole first, die, and be let go of like any dead layer.
     wander.signal(rustix::process::Signal::STOP);
@@ -88,6 +94,10 @@ fn sockets_and_segments_are_for_the_same_user_only() {
     for file in files {
         let mode = std::fs::metadata(&file).map(|m| m.permissions().mode() & 0o077);
         // Files come and go while the processes live.
-        assert!(mode.as_ref().map_or(true, |mode| *mode == 0), "{}: {mode:?}", file.display());
+        assert!(
+            mode.as_ref().map_or(true, |mode| *mode == 0),
+            "{}: {mode:?}",
+            file.display()
+        );
     }
 }

@@ -23,7 +23,9 @@ fn systemd_hears_ready_meals_while_all_beat_and_stopping() {
     let path = stage.run.join("notify");
     let socket = UnixDatagram::bind(&path).expect("a socket for the test");
     let mut heard = |wait: Duration| {
-        socket.set_read_timeout(Some(wait)).expect("a socket takes a time-out");
+        socket
+            .set_read_timeout(Some(wait))
+            .expect("a socket takes a time-out");
         let mut bytes = [0; 4096];
         let n = socket.recv(&mut bytes).ok()?;
         Some(String::from_utf8_lossy(&bytes[..n]).into_owned())
@@ -44,7 +46,10 @@ fn systemd_hears_ready_meals_while_all_beat_and_stopping() {
     while heard(Duration::from_secs(1)).is_some() {}
     assert_eq!(heard(Duration::from_secs(2)), None);
     daemon.signal(Signal::CONT);
-    assert!(heard(long).is_some_and(|said| said.contains("WATCHDOG=1")), "fed again");
+    assert!(
+        heard(long).is_some_and(|said| said.contains("WATCHDOG=1")),
+        "fed again"
+    );
     assert!(daemon.leave().success());
     let mut last = String::new();
     while let Some(said) = heard(Duration::from_millis(200)) {
@@ -63,23 +68,36 @@ fn a_device_is_fed_and_bidden_farewell_only_after_an_orderly_halt() {
     let mut daemon = stage.daemon("fed", &["--creature", &creature]);
     wait_for("it is fed", || eaten().len() > 3);
     assert!(daemon.leave().success());
-    assert!(eaten().ends_with(".V") && eaten().matches('V').count() == 1, "{}", eaten());
+    assert!(
+        eaten().ends_with(".V") && eaten().matches('V').count() == 1,
+        "{}",
+        eaten()
+    );
     std::fs::write(&device, "").expect("a stand-in");
     let mut daemon = stage.daemon("fed", &["--creature", &creature]);
     wait_for("it is fed", || eaten().len() > 3);
     daemon.kill();
-    assert!(!eaten().contains('V'), "a killed daemon must leave the device to bite");
+    assert!(
+        !eaten().contains('V'),
+        "a killed daemon must leave the device to bite"
+    );
 }
 
 #[test]
 fn a_device_that_cannot_be_fed_refuses_the_start() {
     let stage = Stage::new("nodevice");
     let creature = with_device(&stage, "/nowhere/watchdog");
-    let mut daemon = stage.start(env!("CARGO_BIN_EXE_subsumed"), &["--creature", &creature, "--headless"]);
+    let mut daemon = stage.start(
+        env!("CARGO_BIN_EXE_subsumed"),
+        &["--creature", &creature, "--headless"],
+    );
     assert_eq!(daemon.end().code(), Some(1));
     daemon.says("the watchdog device /nowhere/watchdog cannot be written", 1);
     let creature = with_device(&stage, "watchdog");
-    let mut daemon = stage.start(env!("CARGO_BIN_EXE_subsumed"), &["--creature", &creature, "--headless"]);
+    let mut daemon = stage.start(
+        env!("CARGO_BIN_EXE_subsumed"),
+        &["--creature", &creature, "--headless"],
+    );
     assert_eq!(daemon.end().code(), Some(2));
     daemon.says("\"watchdog\" is not an absolute path", 1);
 }

@@ -60,7 +60,9 @@ fn start(name: &str, layer: &str) -> Running {
     let kinds = kinds().with([&HOLD]);
     let creature = check::creature(&Source::new(name, text), &kinds).expect("a sound creature");
     let domain = Domain::join(name).expect("shared memory");
-    let owned = domain.own(name, output_ports(&creature).count()).expect("a name of its own");
+    let owned = domain
+        .own(name, output_ports(&creature).count())
+        .expect("a name of its own");
     let machine = Machine::new(creature, &kinds, owned.page().clone(), None);
     running::start(name, machine, owned, domain, None, Fed::default()).expect("threads")
 }
@@ -95,7 +97,10 @@ fn lost_vital_layers_and_overruns_latch_until_a_reset_that_is_refused_while_they
             halt.decided().0.without(Causes::REFLEX) == Causes::NONE
         });
         let counted = halt.counts().into_iter().find(|c| c.cause == cause);
-        assert!(counted.is_some_and(|c| c.count >= 1 && c.began.0 > 0), "{counted:?}");
+        assert!(
+            counted.is_some_and(|c| c.count >= 1 && c.began.0 > 0),
+            "{counted:?}"
+        );
         running.shut_down();
     }
 }
@@ -107,7 +112,10 @@ fn an_emergency_stop_latches_and_a_reset_ends_it() {
     running.shared.halt.halt(Causes::EMERGENCY);
     until(&running, "it is halted", |causes| causes == Causes::EMERGENCY);
     std::thread::sleep(Duration::from_millis(100));
-    assert!(running.shared.halt.decided().0.has(Causes::EMERGENCY), "it latches");
+    assert!(
+        running.shared.halt.decided().0.has(Causes::EMERGENCY),
+        "it latches"
+    );
     running.shared.halt.reset().expect("nothing stands");
     until(&running, "it is free again", |causes| causes == Causes::NONE);
     running.shut_down();
@@ -122,5 +130,8 @@ fn a_creature_file_that_taps_the_halt_channel_is_refused() {
     let text = format!("{}\n{tap}", allen::CREATURE);
     let refused = check::creature(&Source::new("deaf.toml", text), &kinds()).expect_err("it is refused");
     let refused = refused.to_string();
-    assert!(refused.contains("collide.halt is part of the halt channel"), "{refused}");
+    assert!(
+        refused.contains("collide.halt is part of the halt channel"),
+        "{refused}"
+    );
 }

@@ -142,12 +142,16 @@ fn a_layer_that_floods_is_let_go_and_kept_out() {
     assert!(layer.is_dismissed());
     stop.store(true, Ordering::Relaxed);
     pour.join().expect("it only writes");
-    wait_for("the breach is told", || stage.happened("flooded", &["policy breach: layer flood floods"]));
+    wait_for("the breach is told", || {
+        stage.happened("flooded", &["policy breach: layer flood floods"])
+    });
     // By the process that the kernel names, not the one the layer claims to be.
     let own = format!("layer flood (pid {}) was let go", std::process::id());
     wait_for("it was let go", || stage.happened("flooded", &[&own]));
     drop(layer);
-    let refusal = Layer::plug(&stage, "flooded", "flood").err().expect("it is kept out");
+    let refusal = Layer::plug(&stage, "flooded", "flood")
+        .err()
+        .expect("it is kept out");
     assert!(refusal.contains("broke the policy"), "{refusal}");
     assert!(Layer::plug(&stage, "flooded", "other").is_ok());
     wait_for("the body is free", || stage.is_free("flooded"));
@@ -164,7 +168,11 @@ fn garbage_on_a_tap_is_named_and_does_nothing() {
     let writer = layer.writer.as_mut().expect("its own wire");
     let tap = || {
         let taps = stage.status("spoilt")["taps"].clone();
-        taps.as_array().into_iter().flatten().find(|t| t["from"] == "garbage.heading").cloned()
+        taps.as_array()
+            .into_iter()
+            .flatten()
+            .find(|t| t["from"] == "garbage.heading")
+            .cloned()
     };
     wait_for("the tap is shown", || tap().is_some());
     let tap = || tap().expect("the layer stays attached");
@@ -182,10 +190,14 @@ fn garbage_on_a_tap_is_named_and_does_nothing() {
             faults() > before
         });
     }
-    wait_for("it is named", || stage.happened("spoilt", &["layer garbage", "messages that were none"]));
+    wait_for("it is named", || {
+        stage.happened("spoilt", &["layer garbage", "messages that were none"])
+    });
     assert_eq!(tap()["delivered"], 0);
     drop(layer);
-    wait_for("its end is told", || stage.happened("spoilt", &["layer garbage", "died"]));
+    wait_for("its end is told", || {
+        stage.happened("spoilt", &["layer garbage", "died"])
+    });
     assert!(daemon.leave().success());
 }
 
@@ -234,7 +246,9 @@ fn a_request_takes_a_bounded_share_of_memory() {
     caller.write_all(&[b'['; 100_000]).expect("it is read");
     caller.write_all(b"\n").expect("it is read");
     let mut answer = String::new();
-    BufReader::new(caller).read_line(&mut answer).expect("it is answered");
+    BufReader::new(caller)
+        .read_line(&mut answer)
+        .expect("it is answered");
     assert!(answer.contains("refused"), "{answer}");
     assert!(stage.ask("bounded", &Request::Status).is_some());
     assert!(daemon.leave().success());

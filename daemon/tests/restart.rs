@@ -19,7 +19,10 @@ fn after_sigkill_the_next_start_works_and_attached_layers_come_back() {
     let mut daemon = stage.daemon("again", &[]);
     let killed = std::time::Instant::now();
     wait_for("wander is attached again", || stage.has_layer("again", "wander"));
-    println!("wander came back {:?} after the daemon answered", killed.elapsed());
+    println!(
+        "wander came back {:?} after the daemon answered",
+        killed.elapsed()
+    );
     wait_for("the body is free", || stage.is_free("again"));
     // Names of nodes, ports and segments are drawn anew at every start; only what both instances share by
     // name is in both lists: the service, its settings, the socket.
@@ -28,7 +31,10 @@ fn after_sigkill_the_next_start_works_and_attached_layers_come_back() {
         let name = file.to_string_lossy();
         let shared = [".service", ".sock", ".dynamic", "global_mgmt"];
         let living = name.contains(&format!("{}", wander.pid()));
-        assert!(living || shared.iter().any(|s| name.ends_with(s)) || of_wander(&name, &stage), "left: {name}");
+        assert!(
+            living || shared.iter().any(|s| name.ends_with(s)) || of_wander(&name, &stage),
+            "left: {name}"
+        );
     }
     assert!(wander.leave().success());
     assert!(daemon.leave().success());
@@ -58,12 +64,20 @@ fn two_daemons_side_by_side_have_wires_of_their_own() {
     wait_for("tom is halted", || stage.causes("tom") == ["emergency stop"]);
     assert!(stage.is_free("jerry"));
     tom.kill();
-    let messages = || stage.status("jerry")["wires"][1]["messages"].as_u64().expect("a count");
+    let messages = || {
+        stage.status("jerry")["wires"][1]["messages"]
+            .as_u64()
+            .expect("a count")
+    };
     let first = messages();
     wait_for("jerry's wires go on", || messages() > first + 10);
     assert!(stage.is_free("jerry"));
     let mut third = stage.start(env!("CARGO_BIN_EXE_subsumed"), &["--name", "jerry", "--headless"]);
-    assert_eq!(third.end().code(), Some(1), "a second daemon of one name is refused");
+    assert_eq!(
+        third.end().code(),
+        Some(1),
+        "a second daemon of one name is refused"
+    );
     wander.kill();
     assert!(jerry.leave().success());
     // Jerry cleans up after the dead; tom's socket alone waits for the next tom.

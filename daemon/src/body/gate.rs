@@ -119,7 +119,10 @@ mod tests {
         let good = Some(reading(10, 0.0));
         for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 2.1, -1e300] {
             assert_eq!(decide(&mut gate, 10, [good, good]), Causes::NONE);
-            assert_eq!(decide(&mut gate, 10, [Some(reading(10, bad)), good]), Causes::UNSOUND);
+            assert_eq!(
+                decide(&mut gate, 10, [Some(reading(10, bad)), good]),
+                Causes::UNSOUND
+            );
         }
         let ahead = Some(reading(u64::MAX / 2_000_000, 0.0));
         assert_eq!(decide(&mut gate, 10, [ahead, good]), Causes::STALE);

@@ -73,6 +73,14 @@ impl dyn World {
     }
 }
 
+/// No world at all: commands move nothing, sensors say nothing.
+#[derive(Clone, Copy, Debug)]
+pub struct Nowhere;
+
+impl World for Nowhere {
+    fn tick(&mut self, _: Time, _: &mut WorldEnd) {}
+}
+
 /// Every kind of body built in.
 pub const BODIES: &[&BodyKind] = &[&office::KIND];
 

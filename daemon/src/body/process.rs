@@ -181,7 +181,10 @@ fn run(body: Body) -> Result<(), String> {
     }
     let keeper = keep(owned, house.clone()).map_err(|e| format!("starting a thread: {e}"))?;
     let caller = accept(listener, house.clone()).map_err(|e| format!("starting a thread: {e}"))?;
-    eprintln!("body {name}: kind {}, halted, waits for a daemon", kind.declaration.name);
+    eprintln!(
+        "body {name}: kind {}, halted, waits for a daemon",
+        kind.declaration.name
+    );
     watch(&name, &page, &signalled, limit);
     leaving.store(true, Ordering::Relaxed);
     std::thread::sleep(STANDSTILL);
@@ -343,7 +346,9 @@ impl House {
         };
         if versions != Versions::ours() {
             let ours = Versions::ours();
-            return Err(vec![format!("the daemon was built for {versions}; this body for {ours}")]);
+            return Err(vec![format!(
+                "the daemon was built for {versions}; this body for {ours}"
+            )]);
         }
         if let Some(reason) = Contract::of(self.kind.declaration).against(&contract) {
             return Err(vec![reason]);
@@ -362,7 +367,9 @@ impl House {
 
     fn give(&self, readers: CommandReaders) -> Result<(), Vec<String>> {
         let mut giver = self.giver.lock().expect("nobody panics holding the giver");
-        giver.give(readers).map_err(|_| vec!["the body does not beat".into()])
+        giver
+            .give(readers)
+            .map_err(|_| vec!["the body does not beat".into()])
     }
 
     /// Answers who drives, until it leaves.
@@ -374,7 +381,9 @@ impl House {
             floor: self.floor.clone(),
         })?;
         // A frozen daemon keeps its place; its commands go stale all the same.
-        connection.socket().set_read_timeout(Some(Duration::from_millis(500)))?;
+        connection
+            .socket()
+            .set_read_timeout(Some(Duration::from_millis(500)))?;
         while !self.leave.load(Ordering::Relaxed) {
             match connection.receive::<Ask>() {
                 Ok(Some(Ask::View)) => connection.send(&Answer::View { view: self.view() })?,

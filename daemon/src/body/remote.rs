@@ -126,7 +126,9 @@ impl Finder {
         };
         connection.send(&hello).map_err(io)?;
         match self.answer(&mut connection).map_err(io)? {
-            Some(Answer::Welcome { owner, pid, floor, .. }) => {
+            Some(Answer::Welcome {
+                owner, pid, floor, ..
+            }) => {
                 let page = self.shared.domain.map(&owner).map_err(|e| e.to_string())?;
                 let readers = sensor_readers(self.remote.declaration, &page, 0)
                     .ok_or_else(|| format!("the page of {owner} has too few cells"))?;

@@ -66,7 +66,9 @@ impl Stage {
         let mut all = vec!["--name", name, "--headless", "--seconds", "120"];
         all.extend(arguments);
         let player = self.start(env!("CARGO_BIN_EXE_subsumed"), &all);
-        wait_for(&format!("daemon {name} answers"), || self.ask(name, &Request::Status).is_some());
+        wait_for(&format!("daemon {name} answers"), || {
+            self.ask(name, &Request::Status).is_some()
+        });
         player
     }
 
@@ -78,7 +80,9 @@ impl Stage {
 
     /// Level 1 of Allen as a process.
     pub(crate) fn wander(&self, creature: &str) -> Player {
-        let beside = Path::new(env!("CARGO_BIN_EXE_subsumed")).parent().expect("it lies in a directory");
+        let beside = Path::new(env!("CARGO_BIN_EXE_subsumed"))
+            .parent()
+            .expect("it lies in a directory");
         // As an example of this package, or as the layer's own package builds it.
         let built = [beside.join("examples/wander"), beside.join("allen-wander")];
         let program = built.iter().find(|p| p.exists());
@@ -230,7 +234,10 @@ impl Player {
     /// Waits until it has said `what` for the `times`-th time.
     pub(crate) fn says(&self, what: &str, times: usize) {
         let heard = || self.said().iter().filter(|line| line.contains(what)).count() >= times;
-        wait_for(&format!("{what:?} for the {times}. time, so far: {:#?}", self.said()), heard);
+        wait_for(
+            &format!("{what:?} for the {times}. time, so far: {:#?}", self.said()),
+            heard,
+        );
     }
 }
 

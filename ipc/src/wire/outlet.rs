@@ -7,11 +7,13 @@
 //!                                          └─► dropped, counted
 //! ```
 
+use std::sync::Arc;
+
 use super::page::Writer;
-use super::register::{Joined, Plug, TAPS_MAX, TapEnd, TapState, join, release, sweep};
+use super::register::{Joined, Plug, TAPS_MAX, TapEnd, TapGauge, TapState, join, release, sweep, window_of};
 use crate::clock::Time;
 use crate::message::Words;
-use crate::tap;
+use crate::tap::{self, Window};
 
 /// What was counted at one output.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -64,42 +66,67 @@ impl Outlet {
         self.staged = Some(words);
     }
 
+    /// Whether a message waits for the end of the beat.
+    pub fn is_staged(&self) -> bool {
+        self.staged.is_some()
+    }
+
     /// Writes the staged message, stamped `u`, unless an inhibitor's window holds. Says whether it wrote.
     pub fn commit(&mut self, u: Time, gone: impl FnMut(TapEnd)) -> bool {
-        let mut open = true;
-        if !self.taps.is_empty() {
-            for tap in &mut self.taps {
-                tap.look(u, None);
-                if tap.fresh {
-                    tap.take_effect();
-                }
-            }
-            open = tap::emits(u, self.taps.iter().filter_map(|t| t.window));
-            if !open && self.staged.is_some() {
-                self.counts.inhibited += 1;
-                if let Some(tap) = self
-                    .taps
-                    .iter_mut()
-                    .rfind(|t| t.window.is_some_and(|w| w.holds(u)))
-                {
-                    tap.reject();
-                }
-            }
-            sweep(&mut self.taps, u, gone);
+        self.look(u, gone);
+        match self.staged.take() {
+            Some(words) => self.send(u, &words),
+            None => false,
         }
-        let Some(words) = self.staged.take() else {
+    }
+
+    /// Writes a message at once, stamped `u`, as though the module had emitted it then, unless an inhibitor's
+    /// window holds. Says whether it wrote. What is staged stays so.
+    pub fn put(&mut self, u: Time, words: &Words, gone: impl FnMut(TapEnd)) -> bool {
+        self.look(u, gone);
+        self.send(u, words)
+    }
+
+    /// Takes in what the inhibitors say.
+    pub fn look(&mut self, now: Time, gone: impl FnMut(TapEnd)) {
+        if self.taps.is_empty() {
+            return;
+        }
+        for tap in &mut self.taps {
+            tap.look(now, None);
+            if tap.fresh {
+                tap.take_effect();
+            }
+        }
+        sweep(&mut self.taps, now, gone);
+    }
+
+    fn send(&mut self, u: Time, words: &Words) -> bool {
+        if !tap::emits(u, self.taps.iter().filter_map(|t| t.window)) {
+            self.counts.inhibited += 1;
+            if let Some(tap) = self
+                .taps
+                .iter_mut()
+                .rfind(|t| t.window.is_some_and(|w| w.holds(u)))
+            {
+                tap.reject();
+            }
             return false;
-        };
-        if open {
-            self.writer.write(u, &words);
-            self.counts.emitted += 1;
         }
-        open
+        self.writer.write(u, words);
+        self.counts.emitted += 1;
+        true
     }
 
     /// What was counted so far.
     pub fn counts(&self) -> OutputCounts {
         self.counts
+    }
+
+    /// The window of the inhibitor that is counted at `gauge`; `None` if it is not joined here or said nothing
+    /// yet.
+    pub fn window_of(&self, gauge: &Arc<TapGauge>) -> Option<Window> {
+        window_of(&self.taps, gauge)
     }
 
     /// The inhibitors on this output, for those who watch.

@@ -188,6 +188,8 @@ pub struct Register {
     seen: u64,
     taps: Vec<Joined>,
     held: Option<(Time, Words)>,
+    /// Whether a message was delivered since the last gather.
+    pending: bool,
     arrived: bool,
     counts: InputCounts,
 }
@@ -201,6 +203,7 @@ impl Register {
             seen: 0,
             taps: Vec::with_capacity(TAPS_MAX),
             held: None,
+            pending: false,
             arrived: false,
             counts: InputCounts::default(),
         }
@@ -220,8 +223,15 @@ impl Register {
     /// Looks at the wire and the taps, once a beat, before the module steps. `gone` is handed each tap that
     /// has left for good, to be dropped on a thread that may.
     pub fn gather(&mut self, now: Time, gone: impl FnMut(TapEnd)) {
-        self.arrived = false;
-        let original = self.look(now);
+        self.look(now, gone);
+        self.arrived = std::mem::take(&mut self.pending);
+    }
+
+    /// Looks at the wire and the taps between two beats. What is delivered counts as arrived at the next
+    /// [`Register::gather`]. In real time nobody does this: messages that come faster than the beat
+    /// overwrite each other. On the virtual clock it lets every message meet the rules, not only the newest.
+    pub fn look(&mut self, now: Time, gone: impl FnMut(TapEnd)) {
+        let original = self.newest_original(now);
         if self.taps.is_empty() {
             if let Some((stamp, words)) = original {
                 self.deliver(stamp, words);
@@ -296,7 +306,7 @@ impl Register {
     }
 
     /// The newest message of the existing wire, if it was not seen before and is one.
-    fn look(&mut self, now: Time) -> Option<(Time, Words)> {
+    fn newest_original(&mut self, now: Time) -> Option<(Time, Words)> {
         let reading = self.wire.as_ref()?.newer_than(self.seen)?;
         self.seen = reading.number;
         match plausible(reading.stamp, now) {
@@ -327,7 +337,7 @@ impl Register {
         // overwritten by it.
         if self.held.is_none_or(|(held, _)| stamp >= held) {
             self.held = Some((stamp, words));
-            self.arrived = true;
+            self.pending = true;
         }
     }
 
@@ -344,6 +354,7 @@ impl Register {
     /// Forgets the message held: what a reset line does.
     pub fn clear(&mut self) {
         self.held = None;
+        self.pending = false;
         self.arrived = false;
     }
 
@@ -355,6 +366,11 @@ impl Register {
     /// The taps as they stand in series, for those who watch.
     pub fn taps(&self) -> impl Iterator<Item = TapState> {
         self.taps.iter().map(Joined::state)
+    }
+
+    /// The window of the tap that is counted at `gauge`; `None` if it is not joined here or said nothing yet.
+    pub fn window_of(&self, gauge: &Arc<TapGauge>) -> Option<Window> {
+        window_of(&self.taps, gauge)
     }
 }
 
@@ -391,6 +407,11 @@ pub(super) fn release(taps: &mut [Joined], plug: Plug) {
     for tap in taps.iter_mut().filter(|t| t.end.plug == plug) {
         tap.leaving = true;
     }
+}
+
+pub(super) fn window_of(taps: &[Joined], gauge: &Arc<TapGauge>) -> Option<Window> {
+    let tap = taps.iter().find(|t| Arc::ptr_eq(&t.end.gauge, gauge))?;
+    tap.window
 }
 
 /// Hands over the taps that have left and whose windows have run out.

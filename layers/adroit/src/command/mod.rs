@@ -77,16 +77,30 @@ impl File {
         }
     }
 
-    fn load(&self) -> Result<Hierarchy, String> {
+    fn load(&self) -> Result<Hierarchy, Trouble> {
         let (text, name) = self.read().map_err(|error| self.unreadable(&error))?;
-        language::load(&text, &vocabulary()).map_err(|problems| placed(&name, &problems))
+        language::load(&text, &vocabulary()).map_err(|problems| Trouble::Input(placed(&name, &problems)))
     }
 
-    fn unreadable(&self, error: &io::Error) -> String {
+    fn unreadable(&self, error: &io::Error) -> Trouble {
         match &self.file {
-            Some(path) => format!("{}: {error}", path.display()),
-            None => error.to_string(),
+            Some(path) => Trouble::Input(format!("{}: {error}; expected a program", path.display())),
+            None => Trouble::NotDone(error.to_string()),
         }
+    }
+}
+
+/// What went wrong, and the exit status that says so.
+enum Trouble {
+    /// Bad input: status 2.
+    Input(String),
+    /// Not done: status 1.
+    NotDone(String),
+}
+
+impl From<String> for Trouble {
+    fn from(problem: String) -> Trouble {
+        Trouble::NotDone(problem)
     }
 }
 
@@ -101,6 +115,7 @@ fn placed(name: &str, problems: &Problems) -> String {
 }
 
 /// Carries out a command; results go to standard output, what is wrong to standard error.
+/// Status: 0 done, 1 not done, 2 bad input.
 #[must_use]
 pub fn command(args: AdroitArgs) -> ExitCode {
     let result = match args.what {
@@ -116,24 +131,28 @@ pub fn command(args: AdroitArgs) -> ExitCode {
             .load()
             .map(|hierarchy| print!("{}", svg(&hierarchy, &vocabulary()))),
         What::Run(args) => run::run(&args),
-        What::Apply { at, command } => at.ask(&live::Request::Apply(command)),
-        What::List(at) => at.ask(&live::Request::List),
-        What::Undo(at) => at.ask(&live::Request::Undo),
-        What::Save(at) => at.ask(&live::Request::Save),
-        What::Figures(args) => figures::figures(&args),
+        What::Apply { at, command } => at.ask(&live::Request::Apply(command)).map_err(Trouble::from),
+        What::List(at) => at.ask(&live::Request::List).map_err(Trouble::from),
+        What::Undo(at) => at.ask(&live::Request::Undo).map_err(Trouble::from),
+        What::Save(at) => at.ask(&live::Request::Save).map_err(Trouble::from),
+        What::Figures(args) => figures::figures(&args).map_err(Trouble::from),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,
-        Err(problem) => {
+        Err(Trouble::Input(problem)) => {
+            eprintln!("{problem}");
+            ExitCode::from(2)
+        }
+        Err(Trouble::NotDone(problem)) => {
             eprintln!("{problem}");
             ExitCode::FAILURE
         }
     }
 }
 
-fn formatted(file: &File, write: bool) -> Result<(), String> {
+fn formatted(file: &File, write: bool) -> Result<(), Trouble> {
     let (text, name) = file.read().map_err(|error| file.unreadable(&error))?;
-    let formatted = format(&text).map_err(|problems| placed(&name, &problems))?;
+    let formatted = format(&text).map_err(|problems| Trouble::Input(placed(&name, &problems)))?;
     match &file.file {
         Some(path) if write && path != Path::new("-") => {
             fs::write(path, formatted).map_err(|error| file.unreadable(&error))

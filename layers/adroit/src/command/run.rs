@@ -8,7 +8,7 @@ use std::time::Duration;
 use clap::Args;
 
 use super::live::Listener;
-use super::{File, placed};
+use super::{File, Trouble, placed};
 use crate::draw::svg;
 use crate::nest::{BEAT_S, Layout, Run, generate, picture};
 
@@ -42,11 +42,12 @@ pub(super) struct RunArgs {
     graph: Option<PathBuf>,
 }
 
-pub(super) fn run(args: &RunArgs) -> Result<(), String> {
+pub(super) fn run(args: &RunArgs) -> Result<(), Trouble> {
     let (text, name) = args.file.read().map_err(|error| args.file.unreadable(&error))?;
     let mut world = generate(args.seed, Layout::default());
     world.planning = !args.no_planning;
-    let mut run = Run::with_program(world, &text).map_err(|problems| placed(&name, &problems))?;
+    let mut run =
+        Run::with_program(world, &text).map_err(|problems| Trouble::Input(placed(&name, &problems)))?;
     let listener = args.socket.as_deref().map(Listener::open).transpose()?;
     let limit_s = args.seconds.unwrap_or(crate::figures::LIMIT_S);
     let mut out = io::stdout().lock();
