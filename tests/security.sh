@@ -31,7 +31,8 @@ may() { local what=$1; shift; "$@" >"$work/try.log" 2>&1 || fail "must be possib
 may_not() { local what=$1; shift; "$@" >"$work/try.log" 2>&1 && fail "must not be possible: $what"; passed=$((passed + 1)); }
 
 setpriv --reuid=$owner --regid=$owner --clear-groups "$work/subsumed-body" --name hall --seconds 120 2>"$work/body.log" & body=$!
-setpriv --reuid=$owner --regid=$owner --clear-groups "$work/subsumed" --name guarded --body hall --headless --seconds 120 2>"$work/daemon.log" & daemon=$!
+setpriv --reuid=$owner --regid=$owner --clear-groups "$work/subsumed" --name guarded --body hall --page-port 0 --seconds 120 \
+  >"$work/daemon.out" 2>"$work/daemon.log" & daemon=$!
 ctl() { "$work/subsumectl" --creature guarded "$@"; }
 for _ in $(seq 100); do as $owner "$work/subsumectl" --creature guarded status >/dev/null 2>&1 && break; sleep 0.1; done
 
@@ -52,6 +53,14 @@ for who in "as $stranger" member; do
 done
 status=$(ctl status)
 grep -q '^halt: \(no\|reflex\)' <<<"$status" || fail "the creature must be unharmed"
+if command -v curl >/dev/null; then
+  page=$(sed -n 's#.*\(http://127.0.0.1:[0-9]*\)/.*#\1#p' "$work/daemon.out" | head -1)
+  may "another user looks at the page" as $stranger curl -fsS "$page/api/state"
+  may "another user halts through the page" as $stranger curl -fsS -X POST "$page/api/halt"
+  may "the same user resets it" as $owner "$work/subsumectl" --creature guarded reset
+else
+  echo "skipped: the live page (no curl)"
+fi
 may "the same user halts it" as $owner "$work/subsumectl" --creature guarded halt
 may "the same user resets it" as $owner "$work/subsumectl" --creature guarded reset
 may "the same user stops the daemon" as $owner kill -STOP $daemon
