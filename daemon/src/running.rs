@@ -19,14 +19,23 @@ use ipc::wiring::directory::{Directory, output_ports};
 use serde_json::{Value, json};
 
 use crate::alloc;
-use crate::body::{World, WorldEnd};
+use crate::body::remote::{self, Remote};
+use crate::body::{self, World, WorldEnd};
 use crate::events::Events;
+use crate::executor::gauge::BeatGauge;
 use crate::executor::{self, Beating, Beats, Plan, host, host::Refusal};
+use crate::feeder::{self, Fed};
 use crate::gate::Causes;
-use crate::machine::{Embodied, Machine};
-use crate::motor::{HaltChannel, Motor};
+use crate::halt::{CauseCount, HaltChannel};
+use crate::machine::{Apart, Embodied, Machine, Station};
+use crate::motor::Motor;
 use crate::plugs::Plugs;
 use crate::status::{self, Rates, Record, Watched, WatchedTap};
+use crate::watchdog::Watchdog;
+
+/// Priority of the watchdog: above every layer whatever its file says (at most 97), below the kernel's own
+/// threads at 99.
+const PRIORITY_WATCHDOG: u8 = 98;
 
 /// What the threads of the daemon share, none of them real-time.
 pub struct Shared {
@@ -42,8 +51,8 @@ pub struct Shared {
     pub plugs: Plugs,
     /// Shared memory.
     pub domain: Domain,
-    /// What of the world does not change.
-    pub floor: Value,
+    /// What of the world does not change; known once the body is there.
+    floor: Mutex<Value>,
     status: Mutex<Arc<Value>>,
 }
 
@@ -57,7 +66,24 @@ impl Shared {
             .clone();
         Value::clone(&status)
     }
+
+    /// What of the world does not change.
+    pub fn floor(&self) -> Value {
+        self.floor
+            .lock()
+            .expect("nobody panics holding the floor")
+            .clone()
+    }
+
+    /// Another body was found.
+    pub(crate) fn set_floor(&self, floor: Value) {
+        *self.floor.lock().expect("nobody panics holding the floor") = floor;
+        self.plugs.picture_changed();
+    }
 }
+
+/// Time for every thread to be ready before the first beat is due.
+const START_WAIT: Span = Span::millis(50);
 
 /// A running daemon.
 pub struct Running {
@@ -80,6 +106,14 @@ impl Beats for LayerBeats {
     }
 }
 
+struct WatchdogBeats(Watchdog);
+
+impl Beats for WatchdogBeats {
+    fn beat(&mut self, now: Time) {
+        self.0.look(now);
+    }
+}
+
 struct MotorBeats(Motor);
 
 impl Beats for MotorBeats {
@@ -89,11 +123,19 @@ impl Beats for MotorBeats {
     }
 }
 
-/// Starts `machine`, whose wires are in `owned`, as `name`.
+/// Starts `machine`, whose wires are in `owned`, as `name`. `body` is the name of the process that runs its
+/// body, if one does; `fed` is who is fed while all is well.
 ///
 /// # Errors
 /// When the host refuses a thread.
-pub fn start(name: &str, machine: Machine, owned: OwnedPage, domain: Domain) -> std::io::Result<Running> {
+pub fn start(
+    name: &str,
+    machine: Machine,
+    owned: OwnedPage,
+    domain: Domain,
+    body: Option<&str>,
+    fed: Fed,
+) -> std::io::Result<Running> {
     let began = clock::monotonic();
     let events = Arc::new(Events::new(began));
     let Machine {
@@ -101,12 +143,14 @@ pub fn start(name: &str, machine: Machine, owned: OwnedPage, domain: Domain) -> 
         page,
         stations,
         hands,
-        body,
+        body: embodied,
+        apart,
         taps,
         halt,
+        watchdog,
     } = machine;
     let directory = Directory::of(&creature, name);
-    let floor = body.as_ref().map_or(Value::Null, |b| b.world.floor());
+    let floor = embodied.as_ref().map_or(Value::Null, |b| b.world.floor());
     let plugs = Plugs::new(creature.clone(), directory, hands, events.clone());
     let shared = Arc::new(Shared {
         name: name.into(),
@@ -115,82 +159,62 @@ pub fn start(name: &str, machine: Machine, owned: OwnedPage, domain: Domain) -> 
         events,
         plugs,
         domain,
-        floor,
+        floor: Mutex::new(floor),
         status: Mutex::new(Arc::new(json!({}))),
     });
-    let (stop, leave) = (Arc::new(AtomicBool::new(false)), Arc::new(AtomicBool::new(false)));
-    let mut refusals: Vec<Refusal> = host::lock_memory().err().into_iter().collect();
+    let leave = Arc::new(AtomicBool::new(false));
+    let mut threads = Threads {
+        halt: halt.clone(),
+        stop: Arc::new(AtomicBool::new(false)),
+        begin: clock::monotonic() + START_WAIT,
+        beating: Vec::new(),
+        records: Vec::new(),
+        refusals: host::lock_memory().err().into_iter().collect(),
+    };
     host::limit_runaway();
-    // Time for every thread to be ready before the first beat is due.
-    let begin = clock::monotonic() + Span::millis(50);
-    let mut beating = Vec::new();
-    let mut records = Vec::new();
+    threads.layers(stations)?;
     let mut helpers = Vec::new();
-    let mut periods: Vec<Span> = stations.iter().map(|s| s.spec.period).collect();
-    periods.sort();
-    periods.dedup();
-    for station in stations {
-        let spec = &station.spec;
-        let monotonic = rate_monotonic(&periods, spec.period);
-        let plan = Plan {
-            name: spec.name.clone(),
-            period: spec.period,
-            phase: spec.phase,
-            priority: Some(spec.priority.unwrap_or(monotonic)),
-            cpu: spec.cpu,
-            overrun: spec.overrun,
-        };
-        let (name, level, period) = (spec.name.clone(), spec.level, spec.period);
-        let gauge = station.gauge.clone();
-        let thread = executor::start(
-            plan,
-            begin,
-            LayerBeats(station.running),
-            gauge.clone(),
-            halt.clone(),
-            stop.clone(),
-        )?;
-        keep(
-            &mut beating,
-            &mut records,
-            &mut refusals,
-            thread,
-            (&name, Some(level), period, gauge),
-        );
-    }
     let view = Arc::new(Mutex::new(json!({})));
+    let progress = watchdog.progress.clone();
+    if let Some(spec) = &creature.body {
+        threads.watchdog(watchdog, spec.period)?;
+    }
     if let Some(Embodied {
         motor,
         world,
         link,
         gauge,
-    }) = body
+    }) = embodied
     {
         let period = motor.period();
-        let plan = Plan {
-            name: "motor".into(),
-            period,
-            phase: Span::ZERO,
-            priority: Some(PRIORITY_MAX),
-            cpu: None,
-            overrun: Overrun::Skip,
-        };
-        let thread = executor::start(
-            plan,
-            begin,
-            MotorBeats(motor),
-            gauge.clone(),
-            halt.clone(),
-            stop.clone(),
-        )?;
-        keep(
-            &mut beating,
-            &mut records,
-            &mut refusals,
-            thread,
-            ("motor", None, period, gauge),
-        );
+        threads.motor(motor, gauge)?;
         helpers.push(live(world, link, period, view.clone(), leave.clone())?);
+    }
+    if let (Some(apart), Some(spec), Some(body)) = (apart, &creature.body, body) {
+        let Apart {
+            motor,
+            gauge,
+            giver,
+            first,
+        } = apart;
+        threads.motor(motor, gauge)?;
+        let remote = Remote {
+            name: body.into(),
+            declaration: spec.declaration,
+            first,
+            giver,
+        };
+        helpers.push(remote::keep(remote, shared.clone(), view.clone(), leave.clone())?);
+    }
+    let Threads {
+        stop,
+        beating,
+        records,
+        mut refusals,
+        ..
+    } = threads;
+    if creature.body.is_some() {
+        helpers.push(feeder::feed(fed, progress, shared.clone(), leave.clone())?);
     }
     refusals.dedup();
     helpers.push(keeper(owned, shared.clone(), leave.clone())?);
@@ -232,6 +256,7 @@ pub fn start(name: &str, machine: Machine, owned: OwnedPage, domain: Domain) -> 
         view,
         rates: Rates::default(),
         causes: Causes::NONE,
+        counts: Vec::new(),
     };
     helpers.push(watcher.watch(leave.clone())?);
     Ok(Running {
@@ -244,22 +269,84 @@ pub fn start(name: &str, machine: Machine, owned: OwnedPage, domain: Domain) -> 
     })
 }
 
-fn keep(
-    beating: &mut Vec<Beating>,
-    records: &mut Vec<Record>,
-    refusals: &mut Vec<Refusal>,
-    mut thread: Beating,
-    (name, level, period, gauge): (&str, Option<u8>, Span, Arc<executor::gauge::BeatGauge>),
-) {
-    for refusal in std::mem::take(&mut thread.refusals) {
-        if !refusals.iter().any(|r| r.grants == refusal.grants) {
-            refusals.push(refusal);
+/// The real-time threads as they are started.
+struct Threads {
+    halt: Arc<HaltChannel>,
+    stop: Arc<AtomicBool>,
+    begin: Time,
+    beating: Vec<Beating>,
+    records: Vec<Record>,
+    refusals: Vec<Refusal>,
+}
+
+impl Threads {
+    fn layers(&mut self, stations: Vec<Station>) -> std::io::Result<()> {
+        let mut periods: Vec<Span> = stations.iter().map(|s| s.spec.period).collect();
+        periods.sort();
+        periods.dedup();
+        for station in stations {
+            let spec = station.spec;
+            let monotonic = rate_monotonic(&periods, spec.period);
+            let plan = Plan {
+                name: spec.name,
+                period: spec.period,
+                phase: spec.phase,
+                priority: Some(spec.priority.unwrap_or(monotonic)),
+                cpu: spec.cpu,
+                overrun: spec.overrun,
+                sealed: true,
+            };
+            self.beat(plan, Some(spec.level), LayerBeats(station.running), station.gauge)?;
         }
+        Ok(())
     }
-    let (_, empty) = rtrb::RingBuffer::new(1);
-    let samples = std::mem::replace(&mut thread.samples, empty);
-    records.push(Record::new(name, level, period, gauge, samples));
-    beating.push(thread);
+
+    fn motor(&mut self, motor: Motor, gauge: Arc<BeatGauge>) -> std::io::Result<()> {
+        let plan = own_plan("motor", motor.period(), PRIORITY_MAX);
+        self.beat(plan, None, MotorBeats(motor), gauge)
+    }
+
+    fn watchdog(&mut self, watchdog: Watchdog, period: Span) -> std::io::Result<()> {
+        let gauge = self.halt.watchdog.clone();
+        let plan = own_plan("watchdog", period, PRIORITY_WATCHDOG);
+        self.beat(plan, None, WatchdogBeats(watchdog), gauge)
+    }
+
+    fn beat(
+        &mut self,
+        plan: Plan,
+        level: Option<u8>,
+        beats: impl Beats,
+        gauge: Arc<BeatGauge>,
+    ) -> std::io::Result<()> {
+        let (name, period) = (plan.name.clone(), plan.period);
+        let (halt, stop) = (self.halt.clone(), self.stop.clone());
+        let mut thread = executor::start(plan, self.begin, beats, gauge.clone(), halt, stop)?;
+        for refusal in std::mem::take(&mut thread.refusals) {
+            if !self.refusals.iter().any(|r| r.grants == refusal.grants) {
+                self.refusals.push(refusal);
+            }
+        }
+        let (_, empty) = rtrb::RingBuffer::new(1);
+        let samples = std::mem::replace(&mut thread.samples, empty);
+        self.records
+            .push(Record::new(&name, level, period, gauge, samples));
+        self.beating.push(thread);
+        Ok(())
+    }
+}
+
+/// The plan of a thread that belongs to no layer.
+fn own_plan(name: &str, period: Span, priority: u8) -> Plan {
+    Plan {
+        name: name.into(),
+        period,
+        phase: Span::ZERO,
+        priority: Some(priority),
+        cpu: None,
+        overrun: Overrun::Skip,
+        sealed: true,
+    }
 }
 
 impl Running {
@@ -268,18 +355,33 @@ impl Running {
         self.beating.iter().map(|b| (b.name.clone(), b.tid)).collect()
     }
 
-    /// Halts the body, waits until it stands, ends every thread.
-    pub fn shut_down(mut self) {
-        self.shared.halt.halt(Causes::SHUTDOWN);
+    /// Halts the body, waits until it stands, and ends the process with a failure: shared memory was cut short
+    /// under it, and what iceoryx2 keeps there may be gone as well. The next start removes what remains.
+    pub fn leave_cut(&self) -> ! {
+        self.shared.halt.halt(Causes::MEMORY);
+        let text = "a shared-memory segment was cut short by another process; halting, then leaving";
+        self.shared.events.note("halt", None, text);
+        self.come_to_a_stand(Causes::MEMORY);
+        std::process::exit(1)
+    }
+
+    /// Waits until the gate has closed for `cause` and the body stands.
+    fn come_to_a_stand(&self, cause: Causes) {
         // Ten beats of the motor unit at its default period; then its end of the link is stale anyway.
         for _ in 0..20 {
-            if self.shared.halt.decided().0.has(Causes::SHUTDOWN) {
+            if self.shared.halt.decided().0.has(cause) {
                 break;
             }
             std::thread::sleep(Duration::from_millis(10));
         }
         // From full speed at the braking of a small robot: 0.3 m/s at 1 m/s².
         std::thread::sleep(Duration::from_millis(300));
+    }
+
+    /// Halts the body, waits until it stands, ends every thread.
+    pub fn shut_down(mut self) {
+        self.shared.halt.halt(Causes::SHUTDOWN);
+        self.come_to_a_stand(Causes::SHUTDOWN);
         self.stop.store(true, Ordering::Relaxed);
         self.beating.drain(..).for_each(Beating::join);
         self.leave.store(true, Ordering::Relaxed);
@@ -307,11 +409,12 @@ fn live(
         let mut due = clock::monotonic();
         while !leave.load(Ordering::Relaxed) {
             let now = clock::monotonic();
-            world.tick(now, &mut link);
+            body::turn(world.as_mut(), &mut link, clock::monotonic);
             *view.lock().expect("nobody panics holding the view") = world.view();
             due = due.max(now - period) + period;
             clock::sleep_until(due);
         }
+        world.halt();
     })
 }
 
@@ -343,6 +446,7 @@ struct Watcher {
     view: Arc<Mutex<Value>>,
     rates: Rates,
     causes: Causes,
+    counts: Vec<CauseCount>,
 }
 
 impl Watcher {
@@ -369,6 +473,7 @@ impl Watcher {
             }
         }
         self.note_halts();
+        self.shared.plugs.police(now);
         let status = self.status(now);
         *self
             .shared
@@ -379,7 +484,26 @@ impl Watcher {
 
     /// Notes when the body halts and goes on; a reflex is everyday life and not noted.
     fn note_halts(&mut self) {
+        let counts = self.shared.halt.counts();
         let causes = self.shared.halt.decided().0.without(Causes::REFLEX);
+        // Causes that began since the last look, some of them perhaps over again.
+        for CauseCount { cause, count, began } in &counts {
+            let before = self
+                .counts
+                .iter()
+                .find(|c| c.cause == *cause)
+                .map_or(0, |c| c.count);
+            let unseen = count - before - u64::from(causes.has(*cause) && !self.causes.has(*cause));
+            if *cause == Causes::REFLEX || before == *count || before == 0 || unseen == 0 {
+                continue;
+            }
+            let at = began.since(self.began).seconds();
+            let name = cause.names().join("");
+            let text =
+                format!("the body was halted for a moment: {name} ({unseen} times, last at {at:.3} s)");
+            self.shared.events.note("halt", None, text);
+        }
+        self.counts = counts;
         if causes == self.causes {
             return;
         }
@@ -389,6 +513,14 @@ impl Watcher {
         };
         self.causes = causes;
         self.shared.events.note("halt", None, text);
+    }
+
+    fn count(&self, counted: &CauseCount, causes: Causes) -> Value {
+        json!({
+            "cause": counted.cause.names().join(""), "count": counted.count,
+            "last_s": counted.began.since(self.began).seconds(), "stands": causes.has(counted.cause),
+            "latches": Causes::LATCHED.has(counted.cause),
+        })
     }
 
     fn status(&mut self, now: Time) -> Value {
@@ -425,6 +557,7 @@ impl Watcher {
                 taps.push(status::tap(&watched, now));
             }
         }
+        self.rates.keep_only(&wires);
         let (causes, since) = self.shared.halt.decided();
         let events = self.shared.events.after(0);
         let newest: Vec<_> = events.iter().rev().take(50).rev().collect();
@@ -435,6 +568,7 @@ impl Watcher {
             "halt": {
                 "halted": causes != Causes::NONE, "causes": causes.names(),
                 "since_s": since.since(self.began).seconds(), "latched": causes.has(Causes::LATCHED),
+                "counts": self.shared.halt.counts().iter().map(|c| self.count(c, causes)).collect::<Vec<_>>(),
             },
             "wires": wires, "taps": taps, "layers": layers, "events": newest,
             "real_time_allocations": alloc::broken(),

@@ -16,7 +16,7 @@ pub struct View(pub Arc<Shared>);
 impl page::Source for View {
     fn plan(&self) -> String {
         let shared = &self.0;
-        let floor = shared.floor.clone();
+        let floor = shared.floor();
         let radius = floor.get("robot_radius_m").cloned().unwrap_or(Value::Null);
         json!({
             "creature": shared.name, "floor": floor, "robot_radius_m": radius,

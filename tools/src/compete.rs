@@ -76,7 +76,11 @@ pub(crate) fn compete(asked: &Asked, as_json: bool) -> ExitCode {
     if stop.load(Ordering::Relaxed) {
         eprintln!("stopped: these are the trials done so far");
     }
-    if kept { ExitCode::SUCCESS } else { ExitCode::FAILURE }
+    if kept {
+        ExitCode::SUCCESS
+    } else {
+        ExitCode::FAILURE
+    }
 }
 
 fn write(path: &Path, text: &str) -> bool {

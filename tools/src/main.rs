@@ -1,8 +1,8 @@
 //! `subsumectl`: looks at a running creature, stops it, checks creature files.
 
 mod check;
-mod example;
 mod compete;
+mod example;
 mod live;
 mod modules;
 mod new;

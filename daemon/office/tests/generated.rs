@@ -28,7 +28,11 @@ fn every_office_has_rooms_a_ring_of_corridor_doors_and_furniture() {
     let (mut glass, mut polished) = (0, 0);
     for seed in 100..130 {
         let layout = Layout::generated(seed);
-        let corridors = layout.rooms.iter().filter(|r| r.name.starts_with("corridor")).count();
+        let corridors = layout
+            .rooms
+            .iter()
+            .filter(|r| r.name.starts_with("corridor"))
+            .count();
         let rooms = layout.rooms.len() - corridors;
         assert!(rooms >= 8 && corridors == 4, "seed {seed}: {rooms} rooms");
         let count = |kind| layout.blocks.iter().filter(|b| b.kind == kind).count();
@@ -39,10 +43,17 @@ fn every_office_has_rooms_a_ring_of_corridor_doors_and_furniture() {
         polished += faced(Surface::Polished);
         // Every room has a place, and all places can be walked to: the text was refused otherwise.
         for room in &layout.rooms {
-            assert!(layout.places.iter().any(|p| room.holds(p.x, p.y)), "seed {seed}: {}", room.name);
+            assert!(
+                layout.places.iter().any(|p| room.holds(p.x, p.y)),
+                "seed {seed}: {}",
+                room.name
+            );
         }
     }
-    assert!(glass > 30 && polished > 30, "{glass} of glass, {polished} polished");
+    assert!(
+        glass > 30 && polished > 30,
+        "{glass} of glass, {polished} polished"
+    );
 }
 
 #[test]
@@ -87,7 +98,10 @@ fn a_cornerer_comes_and_talkers_meet() {
         together = together.min(apart(0, 1).max(apart(1, 2)).max(apart(0, 2)));
     }
     assert!(nearest < 1.0, "the cornerer came no nearer than {nearest} m");
-    assert!(together < 1.5, "the talkers were never closer together than {together} m");
+    assert!(
+        together < 1.5,
+        "the talkers were never closer together than {together} m"
+    );
 }
 
 #[test]
@@ -113,7 +127,10 @@ fn two_robots_see_each_other_and_stand_apart() {
     }
     let (a, b) = (office.true_pose_of(0), office.true_pose_of(1));
     assert!((b.x - a.x) > 0.399, "they overlap: {a:?} {b:?}");
-    assert_eq!((office.contacts_of(0).caused, office.contacts_of(1).caused), (1, 1));
+    assert_eq!(
+        (office.contacts_of(0).caused, office.contacts_of(1).caused),
+        (1, 1)
+    );
 }
 
 #[test]

@@ -64,9 +64,13 @@ static DECLARATION: Declaration = Declaration {
         )
         .unit("m")
         .between(0.0, 100.0),
-        Port::new("battery", Kind::Number, "share of the charge that is left, once a second")
-            .unit("1")
-            .between(0.0, 1.0),
+        Port::new(
+            "battery",
+            Kind::Number,
+            "share of the charge that is left, once a second",
+        )
+        .unit("1")
+        .between(0.0, 1.0),
     ],
     parameters: &[
         count("people", 6.0, 40.0, "people who walk about"),
@@ -152,7 +156,13 @@ static DECLARATION: Declaration = Declaration {
             unit: "",
             about: "time between two pictures of the range camera",
         },
-        number("charge", 0.0, 1000.0, "h", "how long a full charge lasts; 0 for ever"),
+        number(
+            "charge",
+            0.0,
+            1000.0,
+            "h",
+            "how long a full charge lasts; 0 for ever",
+        ),
     ],
 };
 
@@ -190,7 +200,6 @@ struct Shared {
 pub struct OfficeWorld {
     shared: Arc<Mutex<Shared>>,
     robot: usize,
-    pinged: u64,
     sonar: [f64; SONARS],
     range_max: f64,
     picture: Span,
@@ -237,7 +246,10 @@ impl Battery {
 
     /// Lets time pass up to `now` with the robot at `at`; says whether it has any charge.
     fn pass(&mut self, now: Time, at: (f64, f64)) -> bool {
-        let gone = self.last.replace(now).map_or(0.0, |last| now.since(last).seconds());
+        let gone = self
+            .last
+            .replace(now)
+            .map_or(0.0, |last| now.since(last).seconds());
         if self.hours <= 0.0 {
             return true;
         }
@@ -362,7 +374,6 @@ impl OfficeWorld {
             battery,
             shared,
             robot,
-            pinged: 0,
             sonar: [range_max; SONARS],
             range_max,
             picture,
@@ -429,40 +440,44 @@ impl Shared {
 
 impl World for OfficeWorld {
     fn tick(&mut self, now: Time, link: &mut WorldEnd) {
+        let wanted = Drive {
+            forward: link.motion(FORWARD)[0],
+            turn: link.motion(TURN)[0],
+        };
         let mut shared = self.shared.lock().expect("nobody panics holding an office");
         let at = shared.office.true_pose_of(self.robot);
         let drive = if self.battery.pass(now, (at.x, at.y)) {
-            drive(now, link)
+            wanted
         } else {
             Drive::default()
         };
         shared.advance(now, self.robot, drive);
         let office = &mut shared.office;
-        if self.battery.told.is_none_or(|told| now.since(told) >= Span::secs(1)) {
+        if self
+            .battery
+            .told
+            .is_none_or(|told| now.since(told) >= Span::secs(1))
+        {
             self.battery.told = Some(now);
-            link.sensors[BATTERY].write(now, &self.battery.left.pack());
+            link.tell(BATTERY, now, &self.battery.left.pack());
         }
-        if let Some(ping) = link.commands[PING].newer_than(self.pinged) {
-            self.pinged = ping.number;
+        if link.order(PING).is_some() {
             self.sonar = office.sonar_of(self.robot);
-            link.sensors[SONAR].write(now, &Map { ranges: self.sonar }.pack());
+            link.tell(SONAR, now, &Map { ranges: self.sonar }.pack());
         }
         if now >= self.picture_due {
             self.picture_due = now + self.picture;
             let ranges = office.fan_of(self.robot);
-            link.sensors[FAN].write(now, &Map { ranges }.pack());
+            link.tell(FAN, now, &Map { ranges }.pack());
         }
         let pose = office.odometry_of(self.robot);
-        link.sensors[COMPASS].write(now, &pose.heading.pack());
-        link.sensors[ODOMETRY].write(
-            now,
-            &Pose {
-                x: pose.x,
-                y: pose.y,
-                heading: pose.heading,
-            }
-            .pack(),
-        );
+        link.tell(COMPASS, now, &pose.heading.pack());
+        let odometry = Pose {
+            x: pose.x,
+            y: pose.y,
+            heading: pose.heading,
+        };
+        link.tell(ODOMETRY, now, &odometry.pack());
     }
 
     fn view(&self) -> Value {
@@ -486,24 +501,5 @@ impl World for OfficeWorld {
             "walls": [], "boxes": boxes, "bounds": [0.0, 0.0, plan.width, plan.height],
             "robot_radius_m": ROBOT_RADIUS_M,
         })
-    }
-
-    fn as_any(&mut self) -> &mut dyn std::any::Any {
-        self
-    }
-}
-
-/// What the wheels are told. The body's own halt: commands that went stale are no commands.
-fn drive(now: Time, link: &WorldEnd) -> Drive {
-    let fresh = |i: usize| {
-        let reading = link.commands[i].read()?;
-        (now.since(reading.stamp) <= KIND.stale).then_some(reading.words[0])
-    };
-    match (fresh(FORWARD), fresh(TURN)) {
-        (Some(forward), Some(turn)) => Drive { forward, turn },
-        _ => Drive {
-            forward: 0.0,
-            turn: 0.0,
-        },
     }
 }

@@ -19,7 +19,7 @@ use rtrb::{Consumer, Producer, RingBuffer};
 
 use crate::alloc;
 use crate::gate::Causes;
-use crate::motor::HaltChannel;
+use crate::halt::HaltChannel;
 use gauge::{BeatGauge, SAMPLES_MAX, Sample};
 use host::Refusal;
 
@@ -44,6 +44,8 @@ pub struct Plan {
     pub cpu: Option<usize>,
     /// What happens when a beat runs over its period.
     pub overrun: Overrun,
+    /// Whether it is expected to allocate nothing once it beats.
+    pub sealed: bool,
 }
 
 /// A thread that beats.
@@ -96,7 +98,9 @@ pub fn start(
             let _ = ready_in.send((tid, settle(&plan)));
             drop(ready_in);
             touch_stack();
-            alloc::seal();
+            if plan.sealed {
+                alloc::seal();
+            }
             run(&plan, begin, &mut beats, &gauge, &halt, &stop, sample_in);
             alloc::unseal();
         })?;

@@ -251,8 +251,8 @@ impl VirtualRun {
                 }
                 Stimulus::Halt => self.machine.halt.halt(Causes::EMERGENCY),
                 Stimulus::Reset => {
-                    let done = self.machine.halt.reset();
-                    assert!(done.is_ok(), "a run on the virtual clock never shuts down");
+                    // Refused while its cause stands; then nothing happens, and the halt says why.
+                    let _ = self.machine.halt.reset();
                 }
             }
             if joining(stimulus) {

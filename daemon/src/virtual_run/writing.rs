@@ -6,7 +6,8 @@ use ipc::clock::Time;
 use ipc::message::Words;
 
 use super::{Stimulus, VirtualRun, Which};
-use crate::machine::Station;
+use crate::body;
+use crate::machine::{Machine, Station};
 
 impl VirtualRun {
     /// Messages of this moment are written, those put and those emitted, the highest level first.
@@ -115,12 +116,15 @@ impl VirtualRun {
         if !put.is_empty() {
             self.look(|_| true);
         }
-        let Some(body) = &mut self.machine.body else {
+        let Machine { body, watchdog, .. } = &mut self.machine;
+        let Some(body) = body else {
             return;
         };
+        watchdog.look(t);
+        watchdog.channel.watchdog.beat(t);
         body.motor.act(t);
         body.gauge.beat(t);
-        body.world.tick(t, &mut body.link);
+        body::turn(body.world.as_mut(), &mut body.link, || t);
         self.body_due = t + body.motor.period();
         if let Some(log) = &mut self.log {
             (0..body.motor.declaration().outputs.len()).for_each(|index| log.scan(index));

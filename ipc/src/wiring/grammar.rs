@@ -224,7 +224,7 @@ pub static LAYER: Grammar = Grammar {
                 high: PRIORITY_MAX,
             },
             "",
-            "SCHED_FIFO priority; rate-monotonic if not given",
+            "SCHED_FIFO priority, below the watchdog at 98; rate-monotonic if not given",
         ),
         key(
             "cpu",

@@ -63,6 +63,8 @@ rules! {
     BadName = "bad-name",
     /// The name of the body is no module's.
     ReservedName = "reserved-name",
+    /// The path of a device is absolute.
+    BadPath = "bad-path",
     /// A port is written as `module.port`.
     BadPort = "bad-port",
     /// A wire is written as `from.output -> to.input`.
@@ -75,8 +77,6 @@ rules! {
     TooManyWires = "too-many-wires",
     /// A user or group is a name or a number.
     BadAccount = "bad-account",
-    /// A path is absolute.
-    BadPath = "bad-path",
     /// The kind of a module or body is one the program was built with.
     UnknownKind = "unknown-kind",
     /// A layer has a name of its own.

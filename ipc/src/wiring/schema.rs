@@ -89,6 +89,7 @@ fn of_value(value: &Value, catalog: &dyn Catalog) -> Json {
         json!({"oneOf": kinds.iter().map(kind).collect::<Vec<_>>()})
     };
     match *value {
+        Value::Path => json!({"type": "string", "pattern": "^/"}),
         Value::Name => json!({"$ref": "#/$defs/name"}),
         Value::ModuleKind => one_of(catalog.modules()),
         Value::BodyKind => one_of(catalog.bodies()),
@@ -99,7 +100,6 @@ fn of_value(value: &Value, catalog: &dyn Catalog) -> Json {
         }
         Value::Bit => json!({"type": "boolean"}),
         Value::Word(words) => json!({"enum": words}),
-        Value::Path => json!({"type": "string", "pattern": "^/"}),
         Value::Port => json!({"$ref": "#/$defs/port"}),
         Value::Ports => list("port"),
         Value::PortsOrAll => json!({"oneOf": [{"const": "*"}, list("port")]}),

@@ -43,7 +43,11 @@ static DECLARATION: Declaration = Declaration {
     ],
     outputs: &[Port::new("heading", Kind::Number, "where to go, by the compass").unit("rad")],
     parameters: &[
-        metres("widest", 2.2, "walls farther apart than this, rim to wall on both sides, are no corridor"),
+        metres(
+            "widest",
+            2.2,
+            "walls farther apart than this, rim to wall on both sides, are no corridor",
+        ),
         metres("ahead", 1.2, "what must be free ahead"),
         span("most", 20, "how long to follow one at a time"),
         span("weary", 40, "how long to leave the next one alone"),

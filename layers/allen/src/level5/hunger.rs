@@ -20,12 +20,18 @@ static DECLARATION: Declaration = Declaration {
     name: "allen.hunger",
     about: "says whether the battery needs charging, with hysteresis",
     diagram: "Full --battery < low--> Hungry --battery > enough--> Full",
-    inputs: &[Port::new("battery", Kind::Number, "share of the charge that is left")
-        .unit("1")
-        .between(0.0, 1.0)],
+    inputs: &[
+        Port::new("battery", Kind::Number, "share of the charge that is left")
+            .unit("1")
+            .between(0.0, 1.0),
+    ],
     outputs: &[Port::new("hungry", Kind::Bit, "whether it needs charging")],
     parameters: &[
-        share("low", 0.5, "less than this is low: what the way home may take is half of it"),
+        share(
+            "low",
+            0.5,
+            "less than this is low: what the way home may take is half of it",
+        ),
         share("enough", 0.95, "more than this is full"),
     ],
 };
