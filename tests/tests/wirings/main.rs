@@ -59,9 +59,9 @@ fn came(case: &Case, watched: bool, shuffle: Option<u64>) -> (Account, u64) {
     };
     let log = run.log().expect("it keeps one");
     let mut account = Account::default();
-    for module in 0..case.modules.len() {
-        account.written.push(plain(log.messages(&wires[module])));
-        account.delivered.push(plain(run.delivered(&wires[module])));
+    for port in &wires {
+        account.written.push(plain(log.messages(port)));
+        account.delivered.push(plain(run.delivered(port)));
     }
     for tap in &case.taps {
         let view = run.tap(&drawn::port(tap.from), &drawn::port(tap.to));
