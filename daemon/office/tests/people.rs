@@ -118,7 +118,7 @@ fn attackers_reach_the_robot_go_away_and_come_back() {
             visits += u32::from(gap < 0.35 && !near);
             near = if near { gap < 1.5 } else { gap < 0.35 };
         }
-        assert!(visits >= 5, "seed {seed}: {visits} visits in ten minutes");
+        assert!(visits >= 3, "seed {seed}: {visits} visits in ten minutes");
         assert_eq!(office.contacts().caused, 0, "a robot at rest causes nothing");
     }
 }

@@ -21,6 +21,12 @@ use ipc::wiring::Source;
 /// Allen with level 0 alone, open to taps of further levels.
 pub const CREATURE: &str = include_str!("../allen.toml");
 
+/// Allen with levels 0 and 1 in one daemon, open to taps of level 2.
+pub const CREATURE_01: &str = include_str!("../allen-01.toml");
+
+/// Allen with all three levels of the source in one daemon, open to taps of further levels.
+pub const CREATURE_012: &str = include_str!("../allen-012.toml");
+
 /// Level 1 as the manifest of a layer process.
 pub const WANDER: &str = include_str!("../wander.toml");
 
