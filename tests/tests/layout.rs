@@ -111,6 +111,9 @@ fn every_file_has_a_title_and_one_idea() {
 #[test]
 fn every_crate_has_a_page_that_says_what_it_is() {
     for (path, text) in files("Cargo.toml") {
+        if path.starts_with("tools/templates/") {
+            continue; // no crate yet: `subsumectl new layer` makes one of it
+        }
         let folder = Path::new(&path).parent().expect("a file lies in a folder");
         let name = folder.file_name().and_then(|n| n.to_str()).unwrap_or_default();
         assert!(
