@@ -86,6 +86,7 @@ if command -v chromium >/dev/null; then
     || fail "chromium failed"
   grep -q 'data-connected="true"' "$work/dom.html" || fail "the page does not reach the daemon"
   grep -q 'data-module="collide"' "$work/dom.html" || fail "the page does not show the wiring"
+  grep -q 'data-wire="sonar.map"[^>]*aria-label' "$work/dom.html" || fail "the page does not bring the wires to life"
 else
   echo "skipped: the page in a browser (no chromium)"
 fi

@@ -167,8 +167,7 @@ impl Policy {
         for tap in &plug.taps {
             self.reasons_against_tap(plug, tap, &mut against);
         }
-        let host = self.directory_with(attached);
-        let breaches = policy::breaches(&host, &claim(plug));
+        let breaches = policy::breaches(&self.directory_with(attached), &claim(plug));
         reasons.extend(breaches.iter().map(policy::Breach::to_string));
         reasons
     }
@@ -213,7 +212,7 @@ impl Policy {
     }
 }
 
-/// What a layer asks for, as the policy judges it.
+/// What a layer asks for, as the creature's policy judges it.
 fn claim(plug: &Plug) -> Claim<'_> {
     let own = |name: &str| plug.outputs.iter().any(|o| o.name == name);
     let reads = plug.wires.iter().map(|(from, _)| from.as_str());

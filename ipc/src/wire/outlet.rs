@@ -9,8 +9,8 @@
 
 use std::sync::Arc;
 
+use super::joined::{Joined, Plug, TAPS_MAX, TapEnd, TapGauge, TapState, join, release, sweep, window_of};
 use super::page::Writer;
-use super::register::{Joined, Plug, TAPS_MAX, TapEnd, TapGauge, TapState, join, release, sweep, window_of};
 use crate::clock::Time;
 use crate::message::Words;
 use crate::tap::{self, Window};

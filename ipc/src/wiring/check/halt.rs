@@ -5,6 +5,7 @@
 use std::collections::HashMap;
 use std::hash::Hash;
 use std::ops::Range;
+use std::path::PathBuf;
 
 use super::Checker;
 use crate::clock::Span;
@@ -45,12 +46,12 @@ impl Checker<'_> {
         values(given)
     }
 
-    pub(super) fn watchdog_device(&mut self, given: Option<&Placed<String>>) -> Option<std::path::PathBuf> {
+    pub(super) fn watchdog_device(&mut self, given: Option<&Placed<String>>) -> Option<PathBuf> {
         let given = given?;
-        let path = std::path::PathBuf::from(&given.value);
+        let path = PathBuf::from(&given.value);
         if !path.is_absolute() || given.value.contains('\0') {
             let message = format!("{:?} is not an absolute path", given.value);
-            let help = "expected the path of a device such as \"/dev/watchdog\"";
+            let help = "expected the path of a watchdog device such as \"/dev/watchdog\"";
             self.findings
                 .refuse(Rule::BadPath, given.at.clone(), message, help);
         }
