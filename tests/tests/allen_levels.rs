@@ -76,7 +76,9 @@ fn level_2_comes_sets_out_for_places_and_goes_without_a_trace() {
     assert!(refused.is_empty(), "{:?}", refused[0].1);
     run.advance(Span::secs(600));
     let delivered = |run: &VirtualRun, from: &str, to: &str| {
-        let tap = run.tap(from, to).unwrap_or_else(|| panic!("there is a tap from {from} to {to}"));
+        let tap = run
+            .tap(from, to)
+            .unwrap_or_else(|| panic!("there is a tap from {from} to {to}"));
         tap.counts.delivered
     };
     let headings = delivered(&run, "pathplan.heading", "avoid.goal");
@@ -84,7 +86,10 @@ fn level_2_comes_sets_out_for_places_and_goes_without_a_trace() {
     assert!(delivered(&run, "whenlook.hold", "wander.heading") > 10);
     run.moment(BEGIN + run.elapsed(), &[Stimulus::Leave("explore".into())]);
     run.advance(Span::secs(2));
-    let (said, gone) = (delivered(&run, "pathplan.heading", "avoid.goal"), travelled(&mut run));
+    let (said, gone) = (
+        delivered(&run, "pathplan.heading", "avoid.goal"),
+        travelled(&mut run),
+    );
     run.advance(Span::secs(300));
     assert_eq!(delivered(&run, "pathplan.heading", "avoid.goal"), said);
     assert!(travelled(&mut run) > gone + 2.0, "levels 0 and 1 do not go on");
