@@ -8,8 +8,9 @@ set -euo pipefail
 bin=$(realpath "${1:-target/release}")
 work=$(mktemp -d)
 export SUBSUMED_DOMAIN="outside$$" SUBSUMED_RUN="$work/run"
-daemon=""
+daemon="" wander=""
 clean() {
+  [ -n "$wander" ] && kill -9 "$wander" 2>/dev/null || true
   [ -n "$daemon" ] && kill -9 "$daemon" 2>/dev/null || true
   rm -rf "$work" "/tmp/iceoryx2-$SUBSUMED_DOMAIN" /dev/shm/"iox2_${SUBSUMED_DOMAIN}_"*
 }

@@ -33,6 +33,7 @@ may_not() { local what=$1; shift; "$@" >"$work/try.log" 2>&1 && fail "must not b
 setpriv --reuid=$owner --regid=$owner --clear-groups "$work/subsumed-body" --name hall --seconds 120 2>"$work/body.log" & body=$!
 setpriv --reuid=$owner --regid=$owner --clear-groups "$work/subsumed" --name guarded --body hall --page-port 0 --seconds 120 \
   >"$work/daemon.out" 2>"$work/daemon.log" & daemon=$!
+disown -a
 ctl() { "$work/subsumectl" --creature guarded "$@"; }
 for _ in $(seq 100); do as $owner "$work/subsumectl" --creature guarded status >/dev/null 2>&1 && break; sleep 0.1; done
 

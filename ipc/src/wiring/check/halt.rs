@@ -108,7 +108,7 @@ impl Checker<'_> {
         }
         let output = known.is_some_and(|d| d.output(&name.value.port).is_some());
         let input = known.is_some_and(|d| d.input(&name.value.port).is_some());
-        if output && !input && self.is_reflex(&name.value, reflexes) {
+        if (output || input) && self.feeds_reflex(&name.value, reflexes) {
             self.halt_channel(name);
         } else if !output {
             // Complains if it is no input either.

@@ -87,7 +87,7 @@ impl Checker<'_> {
             self.findings
                 .refuse(Rule::SensorTap, to.at.clone(), message, help);
         }
-        if how == How::Inhibit && self.is_reflex(&to.value, reflexes) {
+        if self.is_reflex(&to.value, reflexes) || self.feeds_reflex(&to.value, reflexes) {
             self.halt_channel(to);
         }
         let count = self
@@ -107,6 +107,25 @@ impl Checker<'_> {
     pub(super) fn is_reflex(&self, name: &PortName, reflexes: &[Placed<PortName>]) -> bool {
         let whole = name.to_string();
         reflexes.iter().any(|r| r.value == *name) || self.host.is_some_and(|h| h.reflexes.contains(&whole))
+    }
+
+    /// Whether a port belongs to a module that a reflex depends on, from the sensors up: who deafens or blinds
+    /// such a module has stopped the reflex without touching it.
+    pub(super) fn feeds_reflex(&self, name: &PortName, reflexes: &[Placed<PortName>]) -> bool {
+        let mut channel: Vec<&str> = reflexes.iter().map(|r| r.value.module.as_str()).collect();
+        let mut next = 0;
+        while next < channel.len() {
+            let module = channel[next];
+            next += 1;
+            let into = self.writers.iter().filter(|(to, _)| to.module == module);
+            for (_, from) in into {
+                let before = from.value.module.as_str();
+                if before != BODY && !channel.contains(&before) {
+                    channel.push(before);
+                }
+            }
+        }
+        channel.contains(&name.module.as_str())
     }
 
     pub(super) fn halt_channel(&mut self, to: &Placed<PortName>) {
