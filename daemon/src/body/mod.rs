@@ -10,6 +10,7 @@
 //! Must never know a behaviour.
 
 pub mod office;
+pub mod warehouse;
 
 use std::sync::Arc;
 
@@ -74,7 +75,7 @@ impl World for Nowhere {
 }
 
 /// Every kind of body built in.
-pub const BODIES: &[&BodyKind] = &[&office::KIND];
+pub const BODIES: &[&BodyKind] = &[&office::KIND, &warehouse::KIND];
 
 /// The kind called `name`.
 pub fn find(name: &str) -> Option<&'static BodyKind> {
