@@ -118,7 +118,7 @@ impl Checker<'_> {
             let module = channel[next];
             next += 1;
             let into = self.writers.iter().filter(|(to, _)| to.module == module);
-            for (_, from) in into {
+            for (_, (from, _)) in into {
                 let before = from.value.module.as_str();
                 if before != BODY && !channel.contains(&before) {
                     channel.push(before);
