@@ -14,5 +14,6 @@ pub mod motor;
 pub mod plugs;
 pub mod running;
 pub mod status;
+pub mod threads;
 pub mod view;
 pub mod virtual_run;

@@ -9,6 +9,7 @@ use std::time::{Duration, Instant};
 
 use clap::Parser;
 use daemon::control::{self, Control};
+use daemon::executor::host;
 use daemon::machine::{Machine, kinds};
 use daemon::running::{self, Running};
 use daemon::view::View;
@@ -111,6 +112,8 @@ fn run(options: &Options, creature: Creature) -> Result<(), String> {
     for signal in [signal_hook::consts::SIGTERM, signal_hook::consts::SIGINT] {
         signal_hook::flag::register(signal, leave.clone()).map_err(|e| format!("signal {signal}: {e}"))?;
     }
+    // Before any thread is made: none may inherit a real-time policy. What is refused here is said later.
+    let _ = host::be_ordinary();
     let name = creature.name.clone();
     control::claim(&name).map_err(|e| e.to_string())?;
     let domain = Domain::join(&name).map_err(|e| e.to_string())?;

@@ -52,6 +52,11 @@ impl HaltChannel {
         self.standing.fetch_or(cause.0, Ordering::Relaxed);
     }
 
+    /// The causes that others have latched.
+    pub fn standing(&self) -> Causes {
+        Causes(self.standing.load(Ordering::Relaxed))
+    }
+
     /// Ends what is latched.
     ///
     /// # Errors

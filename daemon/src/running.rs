@@ -11,26 +11,22 @@ use std::sync::{Arc, Mutex};
 use std::thread::JoinHandle;
 use std::time::Duration;
 
-use afsm::layer::RunningLayer;
 use ipc::clock::{self, Span, Time};
 use ipc::wire::iceoryx::{Domain, OwnedPage};
-use ipc::wiring::creature::{Creature, Overrun};
+use ipc::wiring::creature::Creature;
 use ipc::wiring::directory::{Directory, output_ports};
 use serde_json::{Value, json};
 
 use crate::alloc;
 use crate::body::{World, WorldEnd};
 use crate::events::Events;
-use crate::executor::{self, Beating, Beats, Plan, host, host::Refusal};
+use crate::executor::{Beating, Refusal, host, plan};
 use crate::gate::Causes;
 use crate::machine::{Embodied, Machine};
-use crate::motor::{HaltChannel, Motor};
+use crate::motor::HaltChannel;
 use crate::plugs::Plugs;
 use crate::status::{self, Rates, Record, Watched, WatchedTap};
-
-/// Priority of the motor unit; layers come below it, the shorter the period the higher. Above what ordinary
-/// programs choose, below the kernel's own threads at 99.
-const PRIORITY_MAX: u8 = 80;
+use crate::threads::{Crew, Start};
 
 /// What the threads of the daemon share, none of them real-time.
 pub struct Shared {
@@ -75,22 +71,14 @@ pub struct Running {
     leave: Arc<AtomicBool>,
 }
 
-struct LayerBeats(RunningLayer);
-
-impl Beats for LayerBeats {
-    fn beat(&mut self, now: Time) {
-        self.0.step(now);
-        self.0.commit(clock::monotonic());
-    }
-}
-
-struct MotorBeats(Motor);
-
-impl Beats for MotorBeats {
-    fn beat(&mut self, now: Time) {
-        self.0.gather(now);
-        self.0.act(clock::monotonic());
-    }
+/// Why a creature that does not run in best effort does not run here.
+fn refused(refusals: &[Refusal]) -> std::io::Error {
+    let lines: Vec<String> = refusals.iter().map(Refusal::to_string).collect();
+    let text = format!(
+        "the host does not grant real time and [executor] best_effort is false:\n  {}",
+        lines.join("\n  ")
+    );
+    std::io::Error::new(std::io::ErrorKind::PermissionDenied, text)
 }
 
 /// Starts `machine`, whose wires are in `owned`, as `name`.
@@ -123,46 +111,24 @@ pub fn start(name: &str, machine: Machine, owned: OwnedPage, domain: Domain) -> 
         status: Mutex::new(Arc::new(json!({}))),
     });
     let (stop, leave) = (Arc::new(AtomicBool::new(false)), Arc::new(AtomicBool::new(false)));
-    let mut refusals: Vec<Refusal> = host::lock_memory().err().into_iter().collect();
+    let mut crew = Crew::default();
+    crew.refusals.extend(host::be_ordinary().err());
+    crew.refusals.extend(host::lock_memory().err());
     host::limit_runaway();
+    let planned = plan::threads(&creature).map_err(|faults| {
+        let text = faults.join("; ");
+        std::io::Error::new(std::io::ErrorKind::InvalidInput, text)
+    })?;
+    let threads = planned.len();
     // Time for every thread to be ready before the first beat is due.
     let begin = clock::monotonic() + Span::millis(50);
-    let mut beating = Vec::new();
-    let mut records = Vec::new();
+    let start = Start {
+        begin,
+        halt: halt.clone(),
+        stop: stop.clone(),
+    };
     let mut helpers = Vec::new();
-    let mut periods: Vec<Span> = stations.iter().map(|s| s.spec.period).collect();
-    periods.sort();
-    periods.dedup();
-    for station in stations {
-        let spec = &station.spec;
-        let rank = periods.iter().position(|p| *p == spec.period).unwrap_or(0);
-        let monotonic = PRIORITY_MAX.saturating_sub(1 + rank as u8).max(1);
-        let plan = Plan {
-            name: spec.name.clone(),
-            period: spec.period,
-            phase: spec.phase,
-            priority: Some(spec.priority.unwrap_or(monotonic)),
-            cpu: spec.cpu,
-            overrun: spec.overrun,
-        };
-        let (name, level, period) = (spec.name.clone(), spec.level, spec.period);
-        let gauge = station.gauge.clone();
-        let thread = executor::start(
-            plan,
-            begin,
-            LayerBeats(station.running),
-            gauge.clone(),
-            halt.clone(),
-            stop.clone(),
-        )?;
-        keep(
-            &mut beating,
-            &mut records,
-            &mut refusals,
-            thread,
-            (&name, Some(level), period, gauge),
-        );
-    }
+    crew.start_layers(&start, planned, stations)?;
     let view = Arc::new(Mutex::new(json!({})));
     if let Some(Embodied {
         motor,
@@ -172,32 +138,22 @@ pub fn start(name: &str, machine: Machine, owned: OwnedPage, domain: Domain) -> 
     }) = body
     {
         let period = motor.period();
-        let plan = Plan {
-            name: "motor".into(),
-            period,
-            phase: Span::ZERO,
-            priority: Some(PRIORITY_MAX),
-            cpu: None,
-            overrun: Overrun::Skip,
-        };
-        let thread = executor::start(
-            plan,
-            begin,
-            MotorBeats(motor),
-            gauge.clone(),
-            halt.clone(),
-            stop.clone(),
-        )?;
-        keep(
-            &mut beating,
-            &mut records,
-            &mut refusals,
-            thread,
-            ("motor", None, period, gauge),
-        );
+        let plan = plan::motor(period, creature.executor.policy, threads);
+        crew.start_motor(&start, plan, motor, gauge)?;
         helpers.push(live(world, link, period, view.clone(), leave.clone())?);
     }
-    refusals.dedup();
+    let Crew {
+        beating,
+        records,
+        refusals,
+    } = crew;
+    if !creature.executor.best_effort && !refusals.is_empty() {
+        stop.store(true, Ordering::Relaxed);
+        leave.store(true, Ordering::Relaxed);
+        beating.into_iter().for_each(Beating::join);
+        helpers.into_iter().for_each(|helper| drop(helper.join()));
+        return Err(refused(&refusals));
+    }
     helpers.push(keeper(owned, shared.clone(), leave.clone())?);
     let net = output_ports(&creature)
         .enumerate()
@@ -247,24 +203,6 @@ pub fn start(name: &str, machine: Machine, owned: OwnedPage, domain: Domain) -> 
         stop,
         leave,
     })
-}
-
-fn keep(
-    beating: &mut Vec<Beating>,
-    records: &mut Vec<Record>,
-    refusals: &mut Vec<Refusal>,
-    mut thread: Beating,
-    (name, level, period, gauge): (&str, Option<u8>, Span, Arc<executor::gauge::BeatGauge>),
-) {
-    for refusal in std::mem::take(&mut thread.refusals) {
-        if !refusals.iter().any(|r| r.grants == refusal.grants) {
-            refusals.push(refusal);
-        }
-    }
-    let (_, empty) = rtrb::RingBuffer::new(1);
-    let samples = std::mem::replace(&mut thread.samples, empty);
-    records.push(Record::new(name, level, period, gauge, samples));
-    beating.push(thread);
 }
 
 impl Running {
@@ -363,13 +301,7 @@ impl Watcher {
     fn look(&mut self) {
         let now = clock::monotonic();
         for record in &mut self.records {
-            let new = record.drain();
-            if new > 0 {
-                let text = format!(
-                    "{} ran over its period {new} times (of {} beats)",
-                    record.name,
-                    record.gauge.counts().beats
-                );
+            if let Some(text) = record.drain() {
                 self.shared.events.note("overrun", Some(&record.name), text);
             }
         }

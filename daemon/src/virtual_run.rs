@@ -11,6 +11,7 @@
 
 use ipc::clock::{Span, Time};
 
+use crate::executor::deadline::Verdict;
 use crate::machine::{Machine, Station};
 
 /// A creature on the virtual clock.
@@ -85,7 +86,7 @@ impl VirtualRun {
         }
         if let Some(body) = body_due {
             body.motor.act(t);
-            body.gauge.beat(t);
+            body.gauge.beat(t, Verdict::default(), true);
             body.world.tick(t, &mut body.link);
             self.body_due = t + body.motor.period();
         }
@@ -97,5 +98,5 @@ impl VirtualRun {
 
 fn commit(station: &mut Station, t: Time) {
     station.running.commit(t);
-    station.gauge.beat(t);
+    station.gauge.beat(t, Verdict::default(), true);
 }

@@ -7,7 +7,9 @@ use std::collections::HashMap;
 use std::ops::Range;
 
 use super::catalog::{Catalog, Declaration, Port, Setting, Takes};
-use super::creature::{BODY, Body, Creature, Halt, How, Layer, Module, Outsiders, PortName, Tap, Wire};
+use super::creature::{
+    BODY, Body, Creature, Executor, Halt, How, Layer, Module, Outsiders, Policy, PortName, Tap, Wake, Wire,
+};
 use super::diagnostic::{Findings, Rejected, Source, one_of};
 use super::directory::Directory;
 use super::document::{self as doc, Keys, Placed};
@@ -133,6 +135,11 @@ impl Checker<'_> {
                 reflexes,
                 hold: parts.hold.unwrap_or(Span::millis(500)),
                 stale: parts.stale.unwrap_or(Span::millis(200)),
+            },
+            executor: Executor {
+                policy: Policy::Fifo,
+                best_effort: true,
+                spin_share_max: 0.1,
             },
             outsiders: Outsiders {
                 tap,
@@ -277,6 +284,8 @@ impl Checker<'_> {
             cpu: raw.cpu,
             overrun: raw.overrun,
             vital: raw.vital,
+            group: None,
+            wake: Wake::Sleep,
             modules,
             wires: Vec::new(),
             taps: Vec::new(),

@@ -24,6 +24,8 @@ pub struct Creature {
     pub halt: Halt,
     /// What processes outside may do.
     pub outsiders: Outsiders,
+    /// How its beats are scheduled.
+    pub executor: Executor,
 }
 
 /// The body and its motor unit.
@@ -56,6 +58,11 @@ pub struct Layer {
     pub overrun: Overrun,
     /// Whether the body halts when it misses its beats.
     pub vital: bool,
+    /// The group whose thread it shares; a thread of its own if none. Layers of one group have equal
+    /// period, phase, priority, processor and way of waking.
+    pub group: Option<String>,
+    /// How its thread waits for the beat.
+    pub wake: Wake,
     /// Its modules, in the order of the file.
     pub modules: Vec<Module>,
     /// Wires into its modules and into the body.
@@ -132,6 +139,38 @@ pub enum Overrun {
     CatchUp,
     /// The body halts.
     Halt,
+}
+
+/// How a thread waits for its beat.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Wake {
+    /// Sleeps until the beat.
+    #[default]
+    Sleep,
+    /// Sleeps until this long before the beat and spins the rest: more even, for a share of a processor.
+    Spin(Span),
+}
+
+/// How beats are scheduled.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Executor {
+    /// The scheduler that is asked for.
+    pub policy: Policy,
+    /// Whether the creature runs on, marked as best effort, where the host grants no real-time scheduling;
+    /// if not, the start is refused there.
+    pub best_effort: bool,
+    /// Largest share of one processor, from 0 to 1, that layers may spend spinning.
+    pub spin_share_max: f64,
+}
+
+/// A real-time scheduler of the host.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Policy {
+    /// SCHED_FIFO: by priority.
+    #[default]
+    Fifo,
+    /// SCHED_DEADLINE: earliest deadline first, from the periods.
+    Deadline,
 }
 
 /// How the creature halts.
