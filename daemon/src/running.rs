@@ -65,6 +65,8 @@ pub struct Running {
     pub shared: Arc<Shared>,
     /// What the host refused; empty in real time.
     pub refusals: Vec<Refusal>,
+    /// What was measured of every layer and the motor unit.
+    pub records: Arc<Mutex<Vec<Record>>>,
     beating: Vec<Beating>,
     helpers: Vec<JoinHandle<()>>,
     stop: Arc<AtomicBool>,
@@ -178,6 +180,7 @@ pub fn start(name: &str, machine: Machine, owned: OwnedPage, domain: Domain) -> 
             .clone(),
         gauge: filed.gauge.clone(),
     });
+    let records = Arc::new(Mutex::new(records));
     let watcher = Watcher {
         shared: shared.clone(),
         began,
@@ -189,7 +192,7 @@ pub fn start(name: &str, machine: Machine, owned: OwnedPage, domain: Domain) -> 
         notes: refusals.iter().map(Refusal::to_string).collect(),
         taps: watched_taps.collect(),
         wires: net,
-        records,
+        records: records.clone(),
         view,
         rates: Rates::default(),
         causes: Causes::NONE,
@@ -198,6 +201,7 @@ pub fn start(name: &str, machine: Machine, owned: OwnedPage, domain: Domain) -> 
     Ok(Running {
         shared,
         refusals,
+        records,
         beating,
         helpers,
         stop,
@@ -282,7 +286,7 @@ struct Watcher {
     notes: Vec<String>,
     wires: Vec<Watched>,
     taps: Vec<WatchedTap>,
-    records: Vec<Record>,
+    records: Arc<Mutex<Vec<Record>>>,
     view: Arc<Mutex<Value>>,
     rates: Rates,
     causes: Causes,
@@ -300,7 +304,7 @@ impl Watcher {
 
     fn look(&mut self) {
         let now = clock::monotonic();
-        for record in &mut self.records {
+        for record in self.records.lock().expect("nobody panics holding the records").iter_mut() {
             if let Some(text) = record.drain() {
                 self.shared.events.note("overrun", Some(&record.name), text);
             }
@@ -336,7 +340,7 @@ impl Watcher {
             .map(|w| status::wire(w, &mut self.rates, now))
             .collect();
         let mut taps: Vec<Value> = self.taps.iter().map(|t| status::tap(t, now)).collect();
-        let mut layers = status::layers(&self.records);
+        let mut layers = status::layers(&self.records.lock().expect("nobody panics holding the records"));
         for a in &attached {
             layers.push(status::attached(a));
             for (index, output) in a.plug.outputs.iter().enumerate() {

@@ -21,6 +21,19 @@ use crate::plugs::Attached;
 /// Longest latency that is told apart; longer ones count as this.
 const LATENCY_MAX_NS: u64 = 10_000_000_000;
 
+/// Histograms of one layer, in nanoseconds; `docs/timing.md` says what each number means.
+#[derive(Clone, Debug)]
+pub struct Measured {
+    /// From the moment a beat was due to the moment its thread ran.
+    pub wake_up: Histogram<u64>,
+    /// How long a beat of the layer took.
+    pub step: Histogram<u64>,
+    /// From the moment a beat was due to its end.
+    pub response: Histogram<u64>,
+    /// By how much the time between two wake-ups differed from the time between their beats.
+    pub period_error: Histogram<u64>,
+}
+
 /// Histograms of what one thread measured.
 pub struct Record {
     /// The thread's layer.
@@ -98,6 +111,16 @@ impl Record {
                 now.missed_in_row_max
             )
         })
+    }
+
+    /// Everything measured so far.
+    pub fn measured(&self) -> Measured {
+        Measured {
+            wake_up: self.latency.clone(),
+            step: self.step.clone(),
+            response: self.response.clone(),
+            period_error: self.period_error.clone(),
+        }
     }
 
     fn show(&self) -> Value {
