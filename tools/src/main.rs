@@ -67,6 +67,8 @@ enum Command {
     Truckin(truckin::command::TruckinArgs),
     /// ADROIT: check, draw, run and change programs of releasing mechanisms
     Adroit(adroit::command::AdroitArgs),
+    /// Measures wake-ups, steps, period errors and ages under a load, alone or against cyclictest
+    Latency(latency::command::LatencyArgs),
     /// Lists the kinds of module, or explains one
     Modules {
         /// A kind of module
@@ -74,7 +76,14 @@ enum Command {
     },
 }
 
+/// Counts what real-time threads allocate where this program has some (`latency`).
+#[global_allocator]
+static ALLOCATOR: daemon::alloc::Counting = daemon::alloc::Counting;
+
 fn main() -> ExitCode {
+    if let Some(status) = latency::workers::dispatch() {
+        return status;
+    }
     // A reader that leaves early, such as `head`, ends this program without a complaint.
     let gone = std::sync::Arc::new(std::sync::atomic::AtomicBool::new(true));
     let _ = signal_hook::flag::register_conditional_default(signal_hook::consts::SIGPIPE, gone);
@@ -95,6 +104,7 @@ fn main() -> ExitCode {
         Command::Check { files } => return check::check(&files, json),
         Command::Truckin(args) => return truckin::command::command(args),
         Command::Adroit(args) => return adroit::command::command(args),
+        Command::Latency(args) => return latency::command::command(&args, json),
         Command::Modules { name } => return check::modules(name.as_deref(), json),
     };
     match done {

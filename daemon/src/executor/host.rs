@@ -8,7 +8,7 @@ use std::time::Duration;
 use rustix::io::Errno;
 use rustix::mm::{MlockAllFlags, mlockall};
 use rustix::process::{Resource, Rlimit, setrlimit};
-use rustix::thread::{CpuSet, sched_setaffinity, set_current_timer_slack};
+use rustix::thread::{CpuSet, sched_getaffinity, sched_setaffinity, set_current_timer_slack};
 use thread_priority::{
     DeadlineFlags, NormalThreadSchedulePolicy, RealtimeThreadSchedulePolicy, ScheduleParams, ThreadPriority,
     ThreadSchedulePolicy, set_thread_priority_and_policy, thread_native_id, thread_schedule_policy,
@@ -141,6 +141,12 @@ pub fn schedule_fifo(priority: u8) -> Result<(), Refusal> {
                  inside a cpu control group under RT_GROUP_SCHED, by RestrictRealtime= and in user namespaces"
             .into(),
     })
+}
+
+/// The processors that this process may run on, by the host's numbers.
+pub fn processors() -> Vec<usize> {
+    let set = sched_getaffinity(None).unwrap_or_else(|_| CpuSet::new());
+    (0..CpuSet::MAX_CPU).filter(|cpu| set.is_set(*cpu)).collect()
 }
 
 /// Binds the calling thread to processor `cpu`.

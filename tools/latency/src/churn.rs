@@ -145,7 +145,9 @@ pub fn read(arguments: &[String]) -> ExitCode {
     let end = Instant::now() + READER_MAX;
     while Instant::now() < end && !leave.load(std::sync::atomic::Ordering::Relaxed) {
         for _ in 0..1_000 {
-            readers.iter().for_each(|r| drop(std::hint::black_box(r.read())));
+            for reader in &readers {
+                std::hint::black_box(reader.read());
+            }
         }
         std::thread::sleep(Duration::from_millis(1));
     }

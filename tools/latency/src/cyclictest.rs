@@ -36,8 +36,9 @@ pub struct Cyclictest {
 
 /// Whether it is installed.
 pub fn available() -> bool {
-    let asked = Command::new("cyclictest").arg("--help").stdout(Stdio::null()).stderr(Stdio::null());
-    { asked }.status().is_ok()
+    let mut asked = Command::new("cyclictest");
+    asked.arg("--help").stdout(Stdio::null()).stderr(Stdio::null());
+    asked.status().is_ok()
 }
 
 impl Cyclictest {

@@ -73,7 +73,8 @@ impl Loaded {
             let program = std::env::current_exe()?;
             let child = Command::new(program)
                 .arg0(WORKER)
-                .args([worker, &cpu.to_string()])
+                .arg(worker)
+                .arg(cpu.to_string())
                 .stdin(Stdio::null())
                 .stdout(Stdio::null())
                 .spawn()?;
