@@ -9,7 +9,7 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 keep=no
 [ "${1:-}" = --keep ] && { keep=yes; shift; }
-binary=$(realpath "${1:-target/release/instructions}")
+binary=$(realpath "${1:-${CARGO_TARGET_DIR:-target}/release/instructions}")
 kept=tests/instructions.txt
 command -v valgrind >/dev/null || { echo "FAILED: valgrind is not installed (Debian: apt-get install valgrind)"; exit 1; }
 work=$(mktemp -d)

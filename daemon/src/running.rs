@@ -304,7 +304,12 @@ impl Watcher {
 
     fn look(&mut self) {
         let now = clock::monotonic();
-        for record in self.records.lock().expect("nobody panics holding the records").iter_mut() {
+        for record in self
+            .records
+            .lock()
+            .expect("nobody panics holding the records")
+            .iter_mut()
+        {
             if let Some(text) = record.drain() {
                 self.shared.events.note("overrun", Some(&record.name), text);
             }

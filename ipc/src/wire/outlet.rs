@@ -10,7 +10,7 @@
 use super::page::Writer;
 use super::register::{Joined, Plug, TAPS_MAX, TapEnd, TapState, join, release, sweep};
 use crate::clock::Time;
-use crate::message::Words;
+use crate::message::{Payload, WORDS_MAX, Words};
 use crate::tap;
 
 /// What was counted at one output.
@@ -26,7 +26,10 @@ pub struct OutputCounts {
 #[derive(Debug)]
 pub struct Outlet {
     writer: Writer,
-    staged: Option<Words>,
+    /// Whether there is a message for the end of the beat.
+    staged: bool,
+    /// Its words, or those of the last one.
+    words: Words,
     taps: Vec<Joined>,
     counts: OutputCounts,
 }
@@ -36,7 +39,8 @@ impl Outlet {
     pub fn new(writer: Writer) -> Outlet {
         Outlet {
             writer,
-            staged: None,
+            staged: false,
+            words: [0.0; WORDS_MAX],
             taps: Vec::with_capacity(TAPS_MAX),
             counts: OutputCounts::default(),
         }
@@ -57,43 +61,63 @@ impl Outlet {
     /// # Panics
     /// When the module emits twice on one port in one step.
     pub fn stage(&mut self, words: Words) {
+        self.mark();
+        self.words = words;
+    }
+
+    /// Keeps the message for the end of the beat, as [`Outlet::stage`] does.
+    ///
+    /// # Panics
+    /// When the module emits twice on one port in one step.
+    #[inline]
+    pub fn emit<T: Payload>(&mut self, message: T) {
+        self.mark();
+        message.put(&mut self.words);
+    }
+
+    #[inline]
+    fn mark(&mut self) {
         assert!(
-            self.staged.is_none(),
+            !self.staged,
             "a module emits at most one message per output port per step"
         );
-        self.staged = Some(words);
+        self.staged = true;
     }
 
     /// Writes the staged message, stamped `u`, unless an inhibitor's window holds. Says whether it wrote.
+    #[inline]
     pub fn commit(&mut self, u: Time, gone: impl FnMut(TapEnd)) -> bool {
-        let mut open = true;
-        if !self.taps.is_empty() {
-            for tap in &mut self.taps {
-                tap.look(u, None);
-                if tap.fresh {
-                    tap.take_effect();
-                }
-            }
-            open = tap::emits(u, self.taps.iter().filter_map(|t| t.window));
-            if !open && self.staged.is_some() {
-                self.counts.inhibited += 1;
-                if let Some(tap) = self
-                    .taps
-                    .iter_mut()
-                    .rfind(|t| t.window.is_some_and(|w| w.holds(u)))
-                {
-                    tap.reject();
-                }
-            }
-            sweep(&mut self.taps, u, gone);
-        }
-        let Some(words) = self.staged.take() else {
+        let open = self.taps.is_empty() || self.decide(u, gone);
+        if !std::mem::take(&mut self.staged) {
             return false;
-        };
+        }
         if open {
-            self.writer.write(u, &words);
+            self.writer.write(u, &self.words);
             self.counts.emitted += 1;
         }
+        open
+    }
+
+    /// Whether no inhibitor's window holds at `u`; counts what is dropped.
+    fn decide(&mut self, u: Time, gone: impl FnMut(TapEnd)) -> bool {
+        for tap in &mut self.taps {
+            tap.look(u, None);
+            if tap.fresh {
+                tap.take_effect();
+            }
+        }
+        let open = tap::emits(u, self.taps.iter().filter_map(|t| t.window));
+        if !open && self.staged {
+            self.counts.inhibited += 1;
+            if let Some(tap) = self
+                .taps
+                .iter_mut()
+                .rfind(|t| t.window.is_some_and(|w| w.holds(u)))
+            {
+                tap.reject();
+            }
+        }
+        sweep(&mut self.taps, u, gone);
         open
     }
 

@@ -135,7 +135,7 @@ fn write() -> Box<dyn FnMut()> {
     let mut now = Time(1_000_000_000);
     Box::new(move || {
         now = now + BEAT;
-        outlet.stage(black_box(0.5).pack());
+        outlet.emit(black_box(0.5));
         black_box(outlet.commit(now, drop));
     })
 }

@@ -113,7 +113,9 @@ impl Drop for Churn {
 
 fn settle() {
     let _ = rustix::process::set_parent_process_death_signal(Some(rustix::process::Signal::KILL));
-    let cpu = std::env::var("SUBSUMED_LAB_CPU").ok().and_then(|c| c.parse().ok());
+    let cpu = std::env::var("SUBSUMED_LAB_CPU")
+        .ok()
+        .and_then(|c| c.parse().ok());
     if let Some(cpu) = cpu {
         let _ = daemon::executor::host::bind(cpu);
     }
@@ -122,7 +124,10 @@ fn settle() {
 /// A layer that taps: what a process started as [`TAPPER`] does.
 pub fn tap() -> ExitCode {
     settle();
-    afsm::process::run(Source::new("tapper.toml (built in)", include_str!("tapper.toml")), modules::kinds())
+    afsm::process::run(
+        Source::new("tapper.toml (built in)", include_str!("tapper.toml")),
+        modules::kinds(),
+    )
 }
 
 /// A reader: what a process started as [`READER`] does, given its arguments. It reads every wire over and over.
@@ -141,7 +146,9 @@ pub fn read(arguments: &[String]) -> ExitCode {
     let Ok(page) = domain.map(creature) else {
         return ExitCode::FAILURE;
     };
-    let readers: Vec<_> = (0..page.len()).filter_map(|i| page.reader(i, Kind::Number)).collect();
+    let readers: Vec<_> = (0..page.len())
+        .filter_map(|i| page.reader(i, Kind::Number))
+        .collect();
     let end = Instant::now() + READER_MAX;
     while Instant::now() < end && !leave.load(std::sync::atomic::Ordering::Relaxed) {
         for _ in 0..1_000 {

@@ -91,7 +91,9 @@ pub fn command(args: &LatencyArgs, json: bool) -> ExitCode {
         }
     };
     if args.against.is_some() && !cyclictest::available() {
-        eprintln!("subsumectl latency: cyclictest cannot be run; install it (Debian: apt-get install rt-tests)");
+        eprintln!(
+            "subsumectl latency: cyclictest cannot be run; install it (Debian: apt-get install rt-tests)"
+        );
         return ExitCode::FAILURE;
     }
     daemon::executor::host::limit_runaway();
@@ -113,9 +115,14 @@ fn ask(args: &LatencyArgs) -> Result<Asked, String> {
     let cpus = daemon::executor::host::processors();
     let cpu = args.cpu.or(cpus.last().copied()).unwrap_or(0);
     if !cpus.contains(&cpu) {
-        return Err(format!("--cpu {cpu}: expected one of the processors of this process: {cpus:?}"));
+        return Err(format!(
+            "--cpu {cpu}: expected one of the processors of this process: {cpus:?}"
+        ));
     }
-    for (name, seconds) in [("--seconds", args.seconds), ("--round-seconds", args.round_seconds)] {
+    for (name, seconds) in [
+        ("--seconds", args.seconds),
+        ("--round-seconds", args.round_seconds),
+    ] {
         if !(0.0..=SECONDS_MAX).contains(&seconds) {
             return Err(format!("{name} {seconds}: expected 0 to {SECONDS_MAX} seconds"));
         }
@@ -130,7 +137,10 @@ fn ask(args: &LatencyArgs) -> Result<Asked, String> {
         ));
     }
     if args.spin.0 * 2 > args.period.0 / 2 {
-        return Err(format!("--spin {}: expected at most a quarter of the period", args.spin));
+        return Err(format!(
+            "--spin {}: expected at most a quarter of the period",
+            args.spin
+        ));
     }
     Ok(Asked {
         load: args.load,
@@ -158,8 +168,18 @@ fn compare(outcome: &Outcome) -> Vec<Compared> {
     let rows: [(&str, Contest, Part, bool); 6] = [
         ("wake-up, ours / ours (control)", Contest::Control, wake_up, false),
         ("wake-up, sleep / cyclictest", Contest::Sleep, wake_up, true),
-        ("wake-up and step, sleep / cyclictest's wake-up", Contest::Sleep, response, true),
-        ("period error, ours / ours (control)", Contest::Control, error, false),
+        (
+            "wake-up and step, sleep / cyclictest's wake-up",
+            Contest::Sleep,
+            response,
+            true,
+        ),
+        (
+            "period error, ours / ours (control)",
+            Contest::Control,
+            error,
+            false,
+        ),
         ("period error, sleep / cyclictest", Contest::Sleep, error, false),
         ("period error, spin / cyclictest", Contest::Spin, error, true),
     ];
@@ -173,7 +193,9 @@ fn compare(outcome: &Outcome) -> Vec<Compared> {
     let mut compared = Vec::new();
     for (what, contest, part, judged) in rows {
         for (q, quantile, base) in LIMITS {
-            let Some(ratio) = ratios(contest, part, q) else { continue };
+            let Some(ratio) = ratios(contest, part, q) else {
+                continue;
+            };
             let control = ratios(Contest::Control, part, q);
             compared.push(Compared {
                 what: what.into(),
@@ -236,7 +258,13 @@ fn answer(args: &LatencyArgs, asked: &Asked, outcome: &Outcome, json: bool) -> E
     ExitCode::SUCCESS
 }
 
-fn summary(asked: &Asked, outcome: &Outcome, compared: &[Compared], allocations: u64, faults: &[String]) -> Value {
+fn summary(
+    asked: &Asked,
+    outcome: &Outcome,
+    compared: &[Compared],
+    allocations: u64,
+    faults: &[String],
+) -> Value {
     let uname = rustix::system::uname();
     let plant = asked.plant.map(|p| format!("{p:?}").to_lowercase());
     json!({
@@ -252,16 +280,32 @@ fn summary(asked: &Asked, outcome: &Outcome, compared: &[Compared], allocations:
     })
 }
 
-fn table(asked: &Asked, outcome: &Outcome, compared: &[Compared], allocations: u64, faults: &[String]) -> String {
-    let wakes = if asked.creature_spins { format!("spin {}", asked.spin) } else { "sleep".into() };
+fn table(
+    asked: &Asked,
+    outcome: &Outcome,
+    compared: &[Compared],
+    allocations: u64,
+    faults: &[String],
+) -> String {
+    let wakes = if asked.creature_spins {
+        format!("spin {}", asked.spin)
+    } else {
+        "sleep".into()
+    };
     let mut out = format!(
         "## Latency under load `{}`\n\nprocessor {}, period {}, the creature waits by {wakes}{}{}\n\n\
          Times in microseconds, nothing of them a gate:\n\n",
         asked.load.name(),
         asked.cpu,
         asked.period,
-        if outcome.interrupted { ", **interrupted**" } else { "" },
-        asked.plant.map_or(String::new(), |p| format!(", **planted: {p:?}**")),
+        if outcome.interrupted {
+            ", **interrupted**"
+        } else {
+            ""
+        },
+        asked
+            .plant
+            .map_or(String::new(), |p| format!(", **planted: {p:?}**")),
     );
     out.push_str(&report::table::of(&outcome.tracks));
     if !compared.is_empty() {
@@ -273,7 +317,11 @@ fn table(asked: &Asked, outcome: &Outcome, compared: &[Compared], allocations: u
                 (Some(_), true) => "passes",
                 (Some(_), false) => "**fails**",
             };
-            let _ = writeln!(out, "| {} | {} | {} | {:.2} | {limit} | {verdict} |", c.what, c.quantile, c.ratio, c.ratio.mean);
+            let _ = writeln!(
+                out,
+                "| {} | {} | {} | {:.2} | {limit} | {verdict} |",
+                c.what, c.quantile, c.ratio, c.ratio.mean
+            );
         }
     }
     out.push_str("\n| thread | beats | missed | in a row | skipped | page faults | sleeps |\n|---|---:|---:|---:|---:|---:|---:|\n");

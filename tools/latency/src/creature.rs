@@ -82,7 +82,8 @@ pub fn checked(setting: &Setting, name: &str) -> Creature {
     let mut creature = check::creature(&source, &modules::kinds()).expect("the built-in creature is sound");
     creature.name = name.into();
     for layer in &mut creature.layers {
-        let scale = |span: Span| Span((span.0 as u128 * setting.period.0 as u128 / layer.period.0 as u128) as u64);
+        let scale =
+            |span: Span| Span((span.0 as u128 * setting.period.0 as u128 / layer.period.0 as u128) as u64);
         (layer.phase, layer.period) = (scale(layer.phase), scale(layer.period));
         layer.cpu = Some(setting.cpu);
         layer.wake = setting.wake;
@@ -105,11 +106,15 @@ impl Alive {
             .map_err(|e| e.to_string())?;
         let machine = Machine::new(creature, &modules::kinds(), owned.page().clone(), None);
         let running = running::start(&name, machine, owned, domain).map_err(|e| e.to_string())?;
-        let control = Control::open(&name, running.shared.clone()).map_err(|e| format!("the control socket: {e}"))?;
+        let control =
+            Control::open(&name, running.shared.clone()).map_err(|e| format!("the control socket: {e}"))?;
         // The beats of the first 200 ms warm the caches and are in nobody's interval.
         std::thread::sleep(Duration::from_millis(200));
         modules::heard(|_| ());
-        let threads = running.threads().into_iter().map(|(n, tid)| (n, tid, Host::of(tid)));
+        let threads = running
+            .threads()
+            .into_iter()
+            .map(|(n, tid)| (n, tid, Host::of(tid)));
         let mut alive = Alive {
             name,
             threads: threads.collect(),
@@ -147,7 +152,11 @@ impl Alive {
         let length = now - began;
         self.last = now;
         let records = self.running.as_ref().expect("alive").records.clone();
-        for record in records.lock().expect("nobody panics holding the records").iter_mut() {
+        for record in records
+            .lock()
+            .expect("nobody panics holding the records")
+            .iter_mut()
+        {
             let measured = record.measured();
             for (metric, h) in [
                 ("wake-up", &measured.wake_up),
@@ -234,7 +243,14 @@ mod tests {
         let creature = checked(&setting, "lab-test");
         let timed: Vec<(Span, Span)> = creature.layers.iter().map(|l| (l.period, l.phase)).collect();
         let half = Span::micros(500);
-        assert_eq!(timed, [(half, Span::ZERO), (half, Span::micros(150)), (half, Span::micros(300))]);
+        assert_eq!(
+            timed,
+            [
+                (half, Span::ZERO),
+                (half, Span::micros(150)),
+                (half, Span::micros(300))
+            ]
+        );
         assert!(daemon::executor::plan::threads(&creature).is_ok());
     }
 }

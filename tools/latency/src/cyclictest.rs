@@ -49,7 +49,15 @@ impl Cyclictest {
     pub fn start(setting: &Setting) -> std::io::Result<Cyclictest> {
         let us = |span: Span| (span.0 / 1_000).to_string();
         let mut child = Command::new("cyclictest")
-            .args(["--laptop", "--mlockall", "--nsecs", "--verbose", "--quiet", "--threads=1", "--policy=fifo"])
+            .args([
+                "--laptop",
+                "--mlockall",
+                "--nsecs",
+                "--verbose",
+                "--quiet",
+                "--threads=1",
+                "--policy=fifo",
+            ])
             .arg(format!("--affinity={}", setting.cpu))
             .arg(format!("--mainaffinity={}", setting.main_cpu))
             .arg(format!("--priority={}", setting.priority))
@@ -111,7 +119,12 @@ mod tests {
     fn samples_are_told_from_the_rest() {
         assert_eq!(sample("       0:      17:   23951"), Some(23_951));
         assert_eq!(sample("       0:       1:     -51"), Some(0));
-        for other in ["Max CPUs = 2", "Thread 0 Interval: 1500", "T: 0 (22950) P:80 I:1000 C: 20 Min: 1", ""] {
+        for other in [
+            "Max CPUs = 2",
+            "Thread 0 Interval: 1500",
+            "T: 0 (22950) P:80 I:1000 C: 20 Min: 1",
+            "",
+        ] {
             assert_eq!(sample(other), None, "{other}");
         }
     }

@@ -43,9 +43,14 @@ pub fn limit(base: f64, control: Option<&Ratio>) -> f64 {
 
 /// What is wrong with a run, in words; empty if it passes.
 pub fn faults(compared: &[Compared], kept: &[Kept], allocations: u64, refusals: &[String]) -> Vec<String> {
-    let mut faults: Vec<String> = refusals.iter().map(|r| format!("not in real time: {r}")).collect();
+    let mut faults: Vec<String> = refusals
+        .iter()
+        .map(|r| format!("not in real time: {r}"))
+        .collect();
     if allocations > 0 {
-        faults.push(format!("{allocations} allocations or releases on real-time threads"));
+        faults.push(format!(
+            "{allocations} allocations or releases on real-time threads"
+        ));
     }
     for k in kept {
         if k.faults > 0 {
@@ -114,8 +119,30 @@ mod tests {
         assert_eq!(one(1.0, kept(), 1, &[]), 1);
         assert_eq!(one(1.0, kept(), 0, &["sched_setscheduler".into()]), 1);
         assert_eq!(one(1.0, Kept { faults: 1, ..kept() }, 0, &[]), 1);
-        assert_eq!(one(1.0, Kept { sleeps: 1001, ..kept() }, 0, &[]), 1);
-        assert_eq!(one(1.0, Kept { identity_faults: 1, ..kept() }, 0, &[]), 1);
+        assert_eq!(
+            one(
+                1.0,
+                Kept {
+                    sleeps: 1001,
+                    ..kept()
+                },
+                0,
+                &[]
+            ),
+            1
+        );
+        assert_eq!(
+            one(
+                1.0,
+                Kept {
+                    identity_faults: 1,
+                    ..kept()
+                },
+                0,
+                &[]
+            ),
+            1
+        );
     }
 
     #[test]

@@ -107,7 +107,11 @@ pub fn round(
     leave: &dyn Fn() -> bool,
 ) -> std::io::Result<Option<Round>> {
     let half = Span(setting.period.0 / 2);
-    let (ours, other) = if swapped { (half, Span::ZERO) } else { (Span::ZERO, half) };
+    let (ours, other) = if swapped {
+        (half, Span::ZERO)
+    } else {
+        (Span::ZERO, half)
+    };
     let beats = (setting.round.as_nanos() as u64 / setting.period.0).max(1);
     // The reference begins at a full second of the monotonic clock; so do we.
     let begin = Time((clock::monotonic().0 / 1_000_000_000 + 2) * 1_000_000_000);
@@ -120,7 +124,11 @@ pub fn round(
     let mut second = None;
     let mut reference = None;
     if contest == Contest::Control {
-        second = Some(Probe::start(plan(setting, "ours-b", other, wake), begin, setting.plant)?);
+        second = Some(Probe::start(
+            plan(setting, "ours-b", other, wake),
+            begin,
+            setting.plant,
+        )?);
     } else {
         reference = Some(Cyclictest::start(&cyclictest::Setting {
             cpu: setting.cpu,
@@ -194,7 +202,10 @@ pub fn plan(setting: &Setting, name: &str, phase: Span, wake: Wake) -> Plan {
 /// Wake-up and response of the last `n` beats.
 fn latest(samples: &[Sample], n: usize) -> Vec<(u64, u64)> {
     let from = samples.len().saturating_sub(n);
-    samples[from..].iter().map(|s| (s.latency.0, s.response.0)).collect()
+    samples[from..]
+        .iter()
+        .map(|s| (s.latency.0, s.response.0))
+        .collect()
 }
 
 fn foreign(latencies: &[u64]) -> Vec<(u64, u64)> {
@@ -214,7 +225,8 @@ fn side(beats: &[(u64, u64)]) -> Side {
         side.response.saturating_record((*response).max(1));
     }
     for two in beats.windows(2) {
-        side.period_error.saturating_record(two[1].0.abs_diff(two[0].0).max(1));
+        side.period_error
+            .saturating_record(two[1].0.abs_diff(two[0].0).max(1));
     }
     side
 }
@@ -225,7 +237,9 @@ mod tests {
 
     #[test]
     fn a_side_is_made_of_its_beats_without_the_first_ones() {
-        let beats: Vec<(u64, u64)> = (0..100).map(|n| (if n < 5 { 1_000_000 } else { 1_000 + n % 2 }, 2_000)).collect();
+        let beats: Vec<(u64, u64)> = (0..100)
+            .map(|n| (if n < 5 { 1_000_000 } else { 1_000 + n % 2 }, 2_000))
+            .collect();
         let side = side(&beats);
         assert_eq!((side.wake_up.len(), side.period_error.len()), (95, 94));
         assert!(side.wake_up.max() < 1_100 && side.period_error.max() == 1);

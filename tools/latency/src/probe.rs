@@ -64,7 +64,8 @@ pub struct Seen {
 impl Host {
     /// The host's counters of a thread of this process.
     pub fn of(tid: i32) -> Host {
-        let read = |file: &str| std::fs::read_to_string(format!("/proc/self/task/{tid}/{file}")).unwrap_or_default();
+        let read =
+            |file: &str| std::fs::read_to_string(format!("/proc/self/task/{tid}/{file}")).unwrap_or_default();
         let stat = read("stat");
         // After the name, which may hold anything: minflt is the 8th field, majflt the 10th.
         let fields: Vec<u64> = stat
@@ -76,7 +77,9 @@ impl Host {
             .collect();
         let fault = |n: usize| fields.get(n).copied().unwrap_or(0);
         let status = read("status");
-        let sleeps = status.lines().find_map(|l| l.strip_prefix("voluntary_ctxt_switches:"));
+        let sleeps = status
+            .lines()
+            .find_map(|l| l.strip_prefix("voluntary_ctxt_switches:"));
         Host {
             faults: fault(7) + fault(9),
             sleeps: sleeps.and_then(|s| s.trim().parse().ok()).unwrap_or(0),

@@ -24,7 +24,11 @@ pub struct Ratio {
 impl Ratio {
     /// Of rounds; `None` without any. Zeros and what is no number are left out.
     pub fn of(rounds: &[f64]) -> Option<Ratio> {
-        let mut sound: Vec<f64> = rounds.iter().copied().filter(|r| r.is_finite() && *r > 0.0).collect();
+        let mut sound: Vec<f64> = rounds
+            .iter()
+            .copied()
+            .filter(|r| r.is_finite() && *r > 0.0)
+            .collect();
         sound.sort_by(f64::total_cmp);
         let n = sound.len();
         let (first, last) = (*sound.first()?, *sound.last()?);
@@ -48,7 +52,11 @@ impl Ratio {
 
 impl std::fmt::Display for Ratio {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "{:.2} ({:.2}–{:.2}, ×{:.2})", self.median, self.min, self.max, self.spread)
+        write!(
+            f,
+            "{:.2} ({:.2}–{:.2}, ×{:.2})",
+            self.median, self.min, self.max, self.spread
+        )
     }
 }
 
@@ -59,7 +67,10 @@ mod tests {
     #[test]
     fn the_median_of_rounds_and_their_spread() {
         let ratio = Ratio::of(&[4.0, 1.0, 0.25, f64::NAN, 0.0]).unwrap();
-        assert_eq!((ratio.median, ratio.min, ratio.max, ratio.rounds), (1.0, 0.25, 4.0, 3));
+        assert_eq!(
+            (ratio.median, ratio.min, ratio.max, ratio.rounds),
+            (1.0, 0.25, 4.0, 3)
+        );
         assert!((ratio.mean - 1.0).abs() < 1e-12 && (ratio.spread - 4.0).abs() < 1e-12);
         assert_eq!(Ratio::of(&[2.0, 3.0]).unwrap().median, 2.5);
         assert_eq!(Ratio::of(&[]), None);

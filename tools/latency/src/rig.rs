@@ -191,7 +191,10 @@ mod tests {
             assert_eq!(number(i), before + 1, "wire {i}");
         }
         for layer in 0..3 {
-            assert_eq!(rig.layers[layer].state_of(&format!("mix{}", layer * 4)), Some("Mixing"));
+            assert_eq!(
+                rig.layers[layer].state_of(&format!("mix{}", layer * 4)),
+                Some("Mixing")
+            );
         }
     }
 

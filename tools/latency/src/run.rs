@@ -108,7 +108,12 @@ pub fn run(asked: &Asked) -> Result<Outcome, String> {
     };
     'rounds: for n in 0..asked.rounds {
         for contest in CONTESTS {
-            progress.say(&format!("round {} of {}: {}", n + 1, asked.rounds, contest.sides().0));
+            progress.say(&format!(
+                "round {} of {}: {}",
+                n + 1,
+                asked.rounds,
+                contest.sides().0
+            ));
             let looking = || {
                 progress.tick();
                 interrupted()
@@ -131,7 +136,11 @@ fn measure_creature(
     progress: &Progress,
     outcome: &mut Outcome,
 ) -> Result<(), String> {
-    let wake = if asked.creature_spins { Wake::Spin(asked.spin) } else { Wake::Sleep };
+    let wake = if asked.creature_spins {
+        Wake::Spin(asked.spin)
+    } else {
+        Wake::Sleep
+    };
     let mut alive = Alive::start(&creature::Setting {
         cpu: asked.cpu,
         period: asked.period,
@@ -140,7 +149,11 @@ fn measure_creature(
     outcome.refusals = alive.refusals();
     let mut churn: Option<Churn> = None;
     let piece = asked.length / INTERVALS;
-    progress.say(&format!("the creature {} under load {}", alive.name, asked.load.name()));
+    progress.say(&format!(
+        "the creature {} under load {}",
+        alive.name,
+        asked.load.name()
+    ));
     for n in 0..INTERVALS {
         let end = Instant::now() + piece;
         let churns = asked.load == Load::Churn && n % 2 == 1;
@@ -180,12 +193,19 @@ impl Outcome {
         let began = began.saturating_sub(length);
         let (ours, other) = round.contest.sides();
         for (name, side) in [(ours, &round.sides[0]), (other, &round.sides[1])] {
-            for (metric, h) in [("wake-up", &side.wake_up), ("period-error", &side.period_error), ("response", &side.response)] {
+            for (metric, h) in [
+                ("wake-up", &side.wake_up),
+                ("period-error", &side.period_error),
+                ("response", &side.response),
+            ] {
                 // The reference has no step; its response is its wake-up.
                 if metric == "response" && name.starts_with("cyclictest") {
                     continue;
                 }
-                let known = self.tracks.iter().position(|t| t.of == name && t.metric == metric);
+                let known = self
+                    .tracks
+                    .iter()
+                    .position(|t| t.of == name && t.metric == metric);
                 let place = known.unwrap_or_else(|| {
                     self.tracks.push(Track::new(name, metric));
                     self.tracks.len() - 1

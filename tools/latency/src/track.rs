@@ -118,6 +118,9 @@ mod tests {
 
     #[test]
     fn micros_keep_three_digits() {
-        assert_eq!([micros(254), micros(12_345), micros(9_876_543)], ["0.25", "12.3", "9877"]);
+        assert_eq!(
+            [micros(254), micros(12_345), micros(9_876_543)],
+            ["0.25", "12.3", "9877"]
+        );
     }
 }

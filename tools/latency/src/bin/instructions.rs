@@ -9,7 +9,9 @@ use latency::cases::{CASES, find};
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let [name, turns] = &arguments[..] else {
-        CASES.iter().for_each(|case| println!("{}\t{}", case.name, case.about));
+        CASES
+            .iter()
+            .for_each(|case| println!("{}\t{}", case.name, case.about));
         return ExitCode::SUCCESS;
     };
     let (Some(case), Ok(turns)) = (find(name), turns.parse::<u64>()) else {

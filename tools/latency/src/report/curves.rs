@@ -22,10 +22,22 @@ const DECADES: f64 = 5.0;
 /// The curves of `tracks`.
 pub fn draw(tracks: &[Track]) -> String {
     let shown: Vec<&Track> = tracks.iter().filter(|t| !t.total.is_empty()).collect();
-    let low = shown.iter().map(|t| t.total.value_at_quantile(0.1)).min().unwrap_or(1).max(10);
-    let high = shown.iter().map(|t| t.total.max()).max().unwrap_or(1_000_000).max(low * 10);
+    let low = shown
+        .iter()
+        .map(|t| t.total.value_at_quantile(0.1))
+        .min()
+        .unwrap_or(1)
+        .max(10);
+    let high = shown
+        .iter()
+        .map(|t| t.total.max())
+        .max()
+        .unwrap_or(1_000_000)
+        .max(low * 10);
     let (low, high) = ((low as f64).log10().floor(), (high as f64).log10().ceil());
-    let y = |ns: f64| TOP + (HEIGHT - TOP - BOTTOM) * (1.0 - (ns.max(1.0).log10() - low) / (high - low)).clamp(0.0, 1.0);
+    let y = |ns: f64| {
+        TOP + (HEIGHT - TOP - BOTTOM) * (1.0 - (ns.max(1.0).log10() - low) / (high - low)).clamp(0.0, 1.0)
+    };
     let x = |q: f64| LEFT + (WIDTH - LEFT - RIGHT) * ((1.0 / (1.0 - q)).log10() / DECADES).min(1.0);
     let mut svg = format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {WIDTH} {HEIGHT}\" font-family=\"sans-serif\" \
@@ -42,7 +54,12 @@ pub fn draw(tracks: &[Track]) -> String {
             if (1.0 - q) * (track.total.len() as f64) < 1.0 {
                 break;
             }
-            let _ = write!(points, "{:.1},{:.1} ", x(q), y(track.total.value_at_quantile(q) as f64));
+            let _ = write!(
+                points,
+                "{:.1},{:.1} ",
+                x(q),
+                y(track.total.value_at_quantile(q) as f64)
+            );
         }
         let _ = writeln!(
             svg,
@@ -80,7 +97,14 @@ fn axes(svg: &mut String, (low, high): (f64, f64), x: impl Fn(f64) -> f64, y: im
             at + 4.0
         );
     }
-    for (q, label) in [(0.0, "0"), (0.9, "90 %"), (0.99, "99 %"), (0.999, "99.9 %"), (0.9999, "99.99 %"), (0.99999, "99.999 %")] {
+    for (q, label) in [
+        (0.0, "0"),
+        (0.9, "90 %"),
+        (0.99, "99 %"),
+        (0.999, "99.9 %"),
+        (0.9999, "99.99 %"),
+        (0.99999, "99.999 %"),
+    ] {
         let at = x(q);
         let bottom = HEIGHT - BOTTOM;
         let _ = writeln!(
@@ -89,11 +113,17 @@ fn axes(svg: &mut String, (low, high): (f64, f64), x: impl Fn(f64) -> f64, y: im
             bottom + 18.0
         );
     }
-    let _ = writeln!(svg, "<text x=\"{LEFT}\" y=\"{:.0}\">percentile: so many were not longer</text>", HEIGHT - 12.0);
+    let _ = writeln!(
+        svg,
+        "<text x=\"{LEFT}\" y=\"{:.0}\">percentile: so many were not longer</text>",
+        HEIGHT - 12.0
+    );
 }
 
 fn escape(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
+    text.replace('&', "&amp;")
+        .replace('<', "&lt;")
+        .replace('>', "&gt;")
 }
 
 #[cfg(test)]

@@ -33,8 +33,18 @@ pub fn text(h: &Histogram<u64>) -> String {
     }
     let (buckets, sub) = (h.buckets(), h.distinct_values());
     let us = |ns: f64| ns / 1e3;
-    let _ = writeln!(out, "#[Mean    = {:12.3}, StdDeviation   = {:12.3}]", us(h.mean()), us(h.stdev()));
-    let _ = writeln!(out, "#[Max     = {:12.3}, Total count    = {:12}]", us(h.max() as f64), h.len());
+    let _ = writeln!(
+        out,
+        "#[Mean    = {:12.3}, StdDeviation   = {:12.3}]",
+        us(h.mean()),
+        us(h.stdev())
+    );
+    let _ = writeln!(
+        out,
+        "#[Max     = {:12.3}, Total count    = {:12}]",
+        us(h.max() as f64),
+        h.len()
+    );
     let _ = writeln!(out, "#[Buckets = {buckets:12}, SubBuckets     = {sub:12}]");
     out
 }

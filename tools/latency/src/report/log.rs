@@ -22,8 +22,10 @@ pub fn write(path: &Path, began: SystemTime, tracks: &[Track]) -> io::Result<()>
         .with_start_time(began)
         .with_max_value_divisor(1e6)
         .begin_log_with(&mut file, &mut serializer)?;
-    let mut lines: Vec<(&Track, &crate::track::Interval)> =
-        tracks.iter().flat_map(|t| t.intervals.iter().map(move |i| (t, i))).collect();
+    let mut lines: Vec<(&Track, &crate::track::Interval)> = tracks
+        .iter()
+        .flat_map(|t| t.intervals.iter().map(move |i| (t, i)))
+        .collect();
     lines.sort_by_key(|(_, interval)| interval.began);
     for (track, interval) in lines {
         let name: String = track.name().replace([',', ' '], "_");
@@ -65,7 +67,10 @@ mod tests {
         let bytes = base64(&read[2]);
         let last: hdrhistogram::Histogram<u64> = Deserializer::new().deserialize(&mut &bytes[..]).unwrap();
         assert_eq!(last.len(), 300);
-        assert_eq!(last.value_at_quantile(0.5), track.intervals[2].histogram.value_at_quantile(0.5));
+        assert_eq!(
+            last.value_at_quantile(0.5),
+            track.intervals[2].histogram.value_at_quantile(0.5)
+        );
     }
 
     /// Standard base64.
@@ -77,7 +82,11 @@ mod tests {
             b'+' => 62,
             _ => 63,
         };
-        let digits: Vec<u32> = text.bytes().filter(|c| *c != b'=').map(|c| u32::from(value(c))).collect();
+        let digits: Vec<u32> = text
+            .bytes()
+            .filter(|c| *c != b'=')
+            .map(|c| u32::from(value(c)))
+            .collect();
         let mut bytes = Vec::new();
         for four in digits.chunks(4) {
             let word = four.iter().fold(0, |w, d| w << 6 | d) << (6 * (4 - four.len()));

@@ -19,7 +19,13 @@ use crate::track::{QUANTILES, Track};
 ///
 /// # Errors
 /// When a file cannot be written.
-pub fn write(folder: &Path, began: SystemTime, tracks: &[Track], summary: &Value, table: &str) -> std::io::Result<()> {
+pub fn write(
+    folder: &Path,
+    began: SystemTime,
+    tracks: &[Track],
+    summary: &Value,
+    table: &str,
+) -> std::io::Result<()> {
     std::fs::create_dir_all(folder)?;
     log::write(&folder.join("latency.hlog"), began, tracks)?;
     for track in tracks {
