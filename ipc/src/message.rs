@@ -63,6 +63,12 @@ impl Kind {
         }
     }
 
+    /// Whether a message of this kind is one word: most are.
+    #[inline]
+    pub const fn single(self) -> bool {
+        matches!(self, Kind::Bit | Kind::Number)
+    }
+
     /// The kind's name as it stands in creature files.
     pub const fn name(self) -> &'static str {
         match self {

@@ -1,6 +1,7 @@
 //! `subsumectl`: looks at a running creature, stops it, checks creature files.
 
 mod check;
+mod doctor;
 mod live;
 mod watch;
 
@@ -69,6 +70,8 @@ enum Command {
     Adroit(adroit::command::AdroitArgs),
     /// Measures wake-ups, steps, period errors and ages under a load, alone or against cyclictest
     Latency(latency::command::LatencyArgs),
+    /// Whether this host can keep a period, and what to change where it can't
+    Doctor(doctor::DoctorArgs),
     /// Lists the kinds of module, or explains one
     Modules {
         /// A kind of module
@@ -105,6 +108,7 @@ fn main() -> ExitCode {
         Command::Truckin(args) => return truckin::command::command(args),
         Command::Adroit(args) => return adroit::command::command(args),
         Command::Latency(args) => return latency::command::command(&args, json),
+        Command::Doctor(args) => return doctor::doctor(&args, json),
         Command::Modules { name } => return check::modules(name.as_deref(), json),
     };
     match done {

@@ -14,7 +14,7 @@
 
 use super::sync::{AtomicU64, Ordering, fence};
 use crate::clock::Time;
-use crate::message::{WORDS_MAX, Words};
+use crate::message::{Kind, WORDS_MAX, Words};
 
 /// Version of the layout of cells and pages in shared memory; changes whenever it does.
 pub const LAYOUT: u32 = 1;
@@ -89,13 +89,15 @@ impl Cell {
             .store((sequence | 1).wrapping_add(1), Ordering::Release);
     }
 
-    /// Writes a message of `length` words. Only the wire's one writer may call this.
+    /// Writes a message of `kind`. Only the wire's one writer may call this.
     #[inline]
-    pub(crate) fn write(&self, stamp: Time, words: &Words, length: usize) {
+    pub(crate) fn write(&self, stamp: Time, words: &Words, kind: Kind) {
         // The lengths that there are, each as code of its own: most messages have one word.
-        match length {
+        if kind.single() {
+            return self.put::<1>(stamp, words);
+        }
+        match kind.words() {
             0 => self.put::<0>(stamp, words),
-            1 => self.put::<1>(stamp, words),
             2 => self.put::<2>(stamp, words),
             3 => self.put::<3>(stamp, words),
             _ => self.put::<WORDS_MAX>(stamp, words),
@@ -164,12 +166,12 @@ impl Cell {
         Attempt::Whole(before / 2, stamp)
     }
 
-    /// As [`Cell::take`], for a message of `length` words.
+    /// As [`Cell::take`], for a message of `kind`.
     #[inline(always)]
-    pub(crate) fn take_words(&self, length: usize, words: &mut Words) -> Option<(u64, Time)> {
-        match length {
-            1 => self.take::<1>(words),
-            other => self.take_others(other, words),
+    pub(crate) fn take_words(&self, kind: Kind, words: &mut Words) -> Option<(u64, Time)> {
+        match kind.single() {
+            true => self.take::<1>(words),
+            false => self.take_others(kind.words(), words),
         }
     }
 
@@ -183,11 +185,11 @@ impl Cell {
         }
     }
 
-    /// The newest message of `length` words; `None` if there never was one, or if none could be read
+    /// The newest message, of `kind`; `None` if there never was one, or if none could be read
     /// whole in [`TRIES_MAX`] tries (the caller keeps what it had).
-    pub fn read(&self, length: usize) -> Option<Reading> {
+    pub fn read(&self, kind: Kind) -> Option<Reading> {
         let mut words = [0.0; WORDS_MAX];
-        let (number, stamp) = self.take_words(length, &mut words)?;
+        let (number, stamp) = self.take_words(kind, &mut words)?;
         Some(Reading { number, stamp, words })
     }
 }

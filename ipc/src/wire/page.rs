@@ -149,7 +149,7 @@ impl Writer {
     #[inline]
     pub fn write(&mut self, stamp: Time, words: &Words) {
         // SAFETY: `_page` keeps the cell mapped.
-        unsafe { self.cell.as_ref() }.write(stamp, words, self.kind.words());
+        unsafe { self.cell.as_ref() }.write(stamp, words, self.kind);
     }
 
     /// The kind of message on this wire.
@@ -162,7 +162,7 @@ impl Reader {
     /// The newest message, if there ever was one and it could be read whole within the bounded tries.
     pub fn read(&self) -> Option<Reading> {
         // SAFETY: `_page` keeps the cell mapped.
-        unsafe { self.cell.as_ref() }.read(self.kind.words())
+        unsafe { self.cell.as_ref() }.read(self.kind)
     }
 
     /// How many messages were written so far; `None` while one is being written.
@@ -188,7 +188,7 @@ impl Reader {
         if !cell.changed(seen) {
             return None;
         }
-        let taken = cell.take_words(self.kind.words(), words);
+        let taken = cell.take_words(self.kind, words);
         taken.filter(|(number, _)| *number != seen)
     }
 

@@ -383,7 +383,7 @@ impl Register {
             From::Wire => &self.incoming,
             From::Tap(k) => &self.taps[k].words,
         };
-        if self.limits.kind.words() == 1 {
+        if self.limits.kind.single() {
             self.held.1[0] = words[0];
         } else {
             self.held.1 = *words;
