@@ -276,3 +276,7 @@ mod tests {
         assert_eq!(gate.decide(&seen(2)), (Causes::VITAL, Passage::Closed));
     }
 }
+
+#[cfg(test)]
+#[path = "gate_every_case.rs"]
+mod every_case;

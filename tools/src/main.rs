@@ -70,6 +70,8 @@ enum Command {
     Adroit(adroit::command::AdroitArgs),
     /// Measures wake-ups, steps, period errors and ages under a load, alone or against cyclictest
     Latency(latency::command::LatencyArgs),
+    /// What a beat costs as a creature grows: time, share of a processor, memory
+    Scale(latency::scale::ScaleArgs),
     /// Whether this host can keep a period, and what to change where it can't
     Doctor(doctor::DoctorArgs),
     /// Lists the kinds of module, or explains one
@@ -108,6 +110,7 @@ fn main() -> ExitCode {
         Command::Truckin(args) => return truckin::command::command(args),
         Command::Adroit(args) => return adroit::command::command(args),
         Command::Latency(args) => return latency::command::command(&args, json),
+        Command::Scale(args) => return latency::scale::command(&args, json),
         Command::Doctor(args) => return doctor::doctor(&args, json),
         Command::Modules { name } => return check::modules(name.as_deref(), json),
     };

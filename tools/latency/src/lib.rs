@@ -18,5 +18,6 @@ pub mod ratio;
 pub mod report;
 pub mod rig;
 pub mod run;
+pub mod scale;
 pub mod track;
 pub mod workers;
