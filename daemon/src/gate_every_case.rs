@@ -36,7 +36,8 @@ fn beats(now: Time) -> Vec<Seen> {
 }
 
 fn fresh(seen: &Seen) -> bool {
-    seen.oldest_command.is_some_and(|stamp| seen.now.since(stamp) <= STALE)
+    seen.oldest_command
+        .is_some_and(|stamp| seen.now.since(stamp) <= STALE)
 }
 
 /// What the gate must say after `history`, from the specification alone.
@@ -49,7 +50,10 @@ fn model(history: &[Seen]) -> (Causes, Passage) {
     } else if !fresh(last) {
         causes = causes.with(Causes::STALE);
     }
-    if history.iter().any(|s| s.unsound && last.now.since(s.now) <= STALE) {
+    if history
+        .iter()
+        .any(|s| s.unsound && last.now.since(s.now) <= STALE)
+    {
         causes = causes.with(Causes::UNSOUND);
     }
     if last.reflex.is_some_and(|stamp| last.now.since(stamp) < HOLD) {
@@ -104,7 +108,11 @@ fn every_third_beat_after_a_good_one_is_too() {
             let mut gate = Gate::new(STALE, HOLD);
             gate.decide(&good);
             gate.decide(&second);
-            assert_eq!(gate.decide(&third), model(&[good, second, third]), "{second:?} {third:?}");
+            assert_eq!(
+                gate.decide(&third),
+                model(&[good, second, third]),
+                "{second:?} {third:?}"
+            );
         }
     }
 }

@@ -12,6 +12,7 @@ pub mod gate;
 pub mod machine;
 pub mod motor;
 pub mod plugs;
+pub mod policy;
 pub mod running;
 pub mod status;
 pub mod threads;

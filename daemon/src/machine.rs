@@ -21,6 +21,7 @@ use crate::motor::{HaltChannel, Motor};
 pub fn kinds() -> Kinds {
     let bodies = body::BODIES.iter().map(|k| k.declaration);
     Kinds::default()
+        .with(stock::modules())
         .with(allen::MODULES.iter().copied())
         .with_bodies(bodies)
 }

@@ -14,6 +14,7 @@ use afsm::assemble::{FiledTap, Wires, join};
 use ipc::clock::{Span, Time};
 use ipc::message::{WORDS_MAX, Words};
 use ipc::wire::{Reader, Register, Writer};
+use ipc::wiring::Declaration;
 use ipc::wiring::creature::{BODY, Creature, How, PortName};
 
 use crate::body::{self, BodyKind, MotorEnd};
@@ -198,9 +199,31 @@ impl Motor {
         }
     }
 
+    /// Looks at every command between two beats; see [`Register::look`].
+    pub fn look(&mut self, now: Time) {
+        for register in &mut self.registers {
+            register.look(now, std::mem::forget);
+        }
+    }
+
+    /// Writes a message on the wire of the `index`-th sensor at once, as though the world had sent it.
+    pub fn put(&mut self, index: usize, now: Time, words: &Words) {
+        self.sensors[index].1.write(now, words);
+    }
+
+    /// The register behind the `index`-th command; `None` for the reset line, which a body has not.
+    pub fn register(&self, index: usize) -> Option<&Register> {
+        self.registers.get(index)
+    }
+
+    /// What the body looks like from outside.
+    pub fn declaration(&self) -> &'static Declaration {
+        self.kind.declaration
+    }
+
     /// Second half of a beat: decides, moves the body, passes on what the sensors say.
     pub fn act(&mut self, now: Time) {
-        let seen = self.look(now);
+        let seen = self.see(now);
         let (causes, passage) = self.gate.decide(&seen);
         self.show(causes, now);
         for (index, register) in self.registers.iter().enumerate() {
@@ -239,7 +262,7 @@ impl Motor {
         }
     }
 
-    fn look(&mut self, now: Time) -> Seen {
+    fn see(&mut self, now: Time) -> Seen {
         let stamps = self
             .kind
             .motion

@@ -3,19 +3,18 @@
 //!
 //! Must never wait for a layer process, nor let anything it says reach a real-time thread unchecked.
 
-use std::collections::HashMap;
 use std::sync::{Arc, Mutex};
 
 use afsm::layer::{Command, Hand};
 use ipc::clock::Span;
 use ipc::control::{Plug, PlugTap};
-use ipc::message::Kind;
 use ipc::wire::iceoryx::Domain;
-use ipc::wire::{Page, Reader, TapEnd, TapGauge};
-use ipc::wiring::creature::{Creature, How};
+use ipc::wire::{Page, Reader, TapGauge};
+use ipc::wiring::creature::Creature;
 use ipc::wiring::directory::Directory;
 
 use crate::events::Events;
+use crate::policy::Policy;
 
 /// A tap that an attached layer holds.
 #[derive(Clone, Debug)]
@@ -41,15 +40,9 @@ pub struct Attached {
     pub taps: Vec<AttachedTap>,
 }
 
-/// Where a port of the creature is found: which layer, and which register or outlet of it.
-type Places = HashMap<String, (usize, usize)>;
-
 /// The layers attached, and how to reach into those of the creature.
 pub struct Plugs {
-    creature: Creature,
-    directory: Directory,
-    inputs: Places,
-    outputs: Places,
+    policy: Policy,
     state: Mutex<State>,
     events: Arc<Events>,
 }
@@ -65,32 +58,13 @@ struct State {
 impl Plugs {
     /// Nobody attached yet.
     pub fn new(creature: Creature, directory: Directory, hands: Vec<Hand>, events: Arc<Events>) -> Plugs {
-        let (mut inputs, mut outputs) = (Places::new(), Places::new());
-        for (station, layer) in creature.layers.iter().enumerate() {
-            let (mut input, mut output) = (0, 0);
-            for module in &layer.modules {
-                for port in module.declaration.inputs {
-                    inputs.insert(format!("{}.{}", module.name, port.name), (station, input));
-                    input += 1;
-                }
-                inputs.insert(format!("{}.reset", module.name), (station, input));
-                input += 1;
-                for port in module.declaration.outputs {
-                    outputs.insert(format!("{}.{}", module.name, port.name), (station, output));
-                    output += 1;
-                }
-            }
-        }
         let state = Mutex::new(State {
             hands,
             version: 1,
             ..State::default()
         });
         Plugs {
-            creature,
-            directory,
-            inputs,
-            outputs,
+            policy: Policy::new(creature, directory),
             state,
             events,
         }
@@ -98,12 +72,8 @@ impl Plugs {
 
     /// What the creature shows to newcomers, attached layers included.
     pub fn directory(&self) -> Directory {
-        let mut directory = self.directory.clone();
-        for attached in self.attached() {
-            directory.layers.push(attached.plug.layer.clone());
-            directory.outputs.extend(attached.plug.outputs.iter().cloned());
-        }
-        directory
+        let attached = self.attached();
+        self.policy.directory_with(attached.iter().map(|a| &a.plug))
     }
 
     /// The layers attached now.
@@ -149,7 +119,10 @@ impl Plugs {
     }
 
     fn try_attach(&self, plug: &Plug, domain: &Domain) -> Result<u32, Vec<String>> {
-        let reasons = self.reasons_against(plug);
+        let attached = self.attached();
+        let reasons = self
+            .policy
+            .reasons_against(plug, attached.iter().map(|a| &a.plug));
         if !reasons.is_empty() {
             return Err(reasons);
         }
@@ -190,26 +163,9 @@ impl Plugs {
         tap: &PlugTap,
         page: &Arc<Page>,
     ) -> Result<AttachedTap, Vec<String>> {
-        let index = plug
-            .outputs
-            .iter()
-            .position(|o| o.name == tap.from)
-            .expect("checked");
-        let reader = page.reader(index, plug.outputs[index].kind).expect("checked");
-        let gauge = Arc::new(TapGauge::default());
-        let end = TapEnd {
-            reader: reader.clone(),
-            time_constant: tap.time_constant,
-            level: plug.level,
-            plug: number,
-            gauge: gauge.clone(),
-        };
-        let (places, command): (_, fn(usize, TapEnd) -> Command) = match tap.how {
-            How::Suppress => (&self.inputs, Command::Suppress),
-            How::Inhibit => (&self.outputs, Command::Inhibit),
-        };
-        let (station, port) = places[&tap.to];
-        if state.hands[station].commands.push(command(port, end)).is_err() {
+        let joined = self.policy.join(number, plug, tap, page);
+        let (station, command) = (joined.station, joined.command);
+        if state.hands[station].commands.push(command).is_err() {
             for hand in &mut state.hands {
                 let _ = hand.commands.push(Command::Release(number));
             }
@@ -220,8 +176,8 @@ impl Plugs {
         }
         Ok(AttachedTap {
             tap: tap.clone(),
-            gauge,
-            reader,
+            gauge: joined.gauge,
+            reader: joined.reader,
         })
     }
 
@@ -248,96 +204,5 @@ impl Plugs {
             .unwrap_or(Span::ZERO);
         let text = format!("layer {layer} (pid {pid}) {why}; its taps run out within {longest}");
         self.events.note("layer", Some(layer), text);
-    }
-
-    fn reasons_against(&self, plug: &Plug) -> Vec<String> {
-        let mut reasons = Vec::new();
-        let outsiders = &self.creature.outsiders;
-        let mut against = |wrong: bool, reason: String| {
-            if wrong {
-                reasons.push(reason);
-            }
-        };
-        let attached = self.attached();
-        let taken = self.directory.layers.contains(&plug.layer);
-        against(
-            taken || attached.iter().any(|a| a.plug.layer == plug.layer),
-            format!("there is a layer {:?} already", plug.layer),
-        );
-        against(
-            attached.len() >= outsiders.layers_max,
-            format!("{} layers are attached, the most allowed", attached.len()),
-        );
-        against(
-            plug.level > outsiders.level_max,
-            format!(
-                "level {} is above {}, the highest allowed",
-                plug.level, outsiders.level_max
-            ),
-        );
-        against(
-            plug.outputs.len() > ipc::wire::WIRES_MAX,
-            "too many outputs".into(),
-        );
-        against(
-            plug.layer.len() > 48 || plug.layer.is_empty(),
-            "the layer's name is not one".into(),
-        );
-        for tap in &plug.taps {
-            self.reasons_against_tap(plug, tap, &mut against);
-        }
-        reasons
-    }
-
-    fn reasons_against_tap(&self, plug: &Plug, tap: &PlugTap, against: &mut impl FnMut(bool, String)) {
-        let to = &tap.to;
-        let ports = if tap.how == How::Suppress {
-            &self.directory.inputs
-        } else {
-            &self.directory.outputs
-        };
-        let target = ports.iter().find(|p| p.name == *to);
-        let source = plug.outputs.iter().find(|o| o.name == tap.from);
-        let places = if tap.how == How::Suppress {
-            &self.inputs
-        } else {
-            &self.outputs
-        };
-        against(
-            target.is_none() || !places.contains_key(to),
-            format!("there is no such port {to} to tap"),
-        );
-        against(
-            source.is_none(),
-            format!("{} is not among the layer's outputs", tap.from),
-        );
-        against(
-            !self.directory.open_taps.contains(to),
-            format!("the creature does not open {to} to taps from outside"),
-        );
-        against(
-            self.directory.reflexes.contains(to),
-            format!("{to} is part of the halt channel"),
-        );
-        let longest = self.creature.outsiders.time_constant_max;
-        against(
-            tap.time_constant > longest,
-            format!("the time constant {} is above {longest}", tap.time_constant),
-        );
-        against(
-            tap.time_constant == Span::ZERO,
-            "a tap needs a time constant".into(),
-        );
-        let Some(target) = target else { return };
-        against(
-            target.level.is_none_or(|l| l >= plug.level),
-            format!("{to} is not of a level below {}", plug.level),
-        );
-        let kinds: (Option<Kind>, Kind) = (source.map(|s| s.kind), target.kind);
-        let differ = tap.how == How::Suppress && kinds.0.is_some_and(|kind| kind != kinds.1);
-        against(
-            differ,
-            format!("{} does not carry what {to} takes, {}", tap.from, kinds.1),
-        );
     }
 }

@@ -131,6 +131,7 @@ fn takes(takes: &Takes) -> String {
         Takes::Span { default: d } => default(d.map(|s| format!("{:?}", s.to_string()))),
         Takes::Bit { default: d } => default(d.map(|b| b.to_string())),
         Takes::Word { default: d, words } => format!("{} of {words:?}", default(d.map(|w| format!("{w:?}")))),
-        Takes::Numbers { default: d } => default(d.map(|n| format!("{n:?}"))),
+        Takes::Spans { .. } => "some times".into(),
+        Takes::Numbers { default: d, .. } => default(d.map(|n| format!("{n:?}"))),
     }
 }

@@ -3,6 +3,7 @@
 mod check;
 mod doctor;
 mod live;
+mod test;
 mod watch;
 
 use std::path::PathBuf;
@@ -21,8 +22,9 @@ use ipc::control::Request;
     subsumectl watch turn.heading         messages of a wire as they come\n  \
     subsumectl halt; subsumectl reset     emergency stop, and its end\n  \
     subsumectl --creature jerry status    another instance\n  \
-    subsumectl check mine.toml            every error of a creature file\n\n\
-    Status: 0 done; 1 not done (no daemon, refused); 2 bad input."
+    subsumectl check mine.toml            every error of a creature file\n  \
+    subsumectl test scenarios/            what must come of a creature, on the virtual clock\n\n\
+    Status: 0 done; 1 not done (no daemon, refused, an expectation not met); 2 bad input."
 )]
 struct Options {
     /// The running creature to speak to
@@ -74,6 +76,21 @@ enum Command {
     Scale(latency::scale::ScaleArgs),
     /// Whether this host can keep a period, and what to change where it can't
     Doctor(doctor::DoctorArgs),
+    /// Runs scenario files on the virtual clock
+    Test {
+        /// Scenario files, and folders of them
+        #[arg(required = true, value_name = "FILE-or-FOLDER")]
+        paths: Vec<PathBuf>,
+        /// Only scenarios with this in their path or title
+        #[arg(long, value_name = "TEXT")]
+        filter: Option<String>,
+        /// Steps the modules of a layer in another order each beat, by this seed
+        #[arg(long, value_name = "SEED")]
+        shuffle: Option<u64>,
+        /// Writes a report for continuous integration as well
+        #[arg(long, value_name = "FILE")]
+        junit: Option<PathBuf>,
+    },
     /// Lists the kinds of module, or explains one
     Modules {
         /// A kind of module
@@ -112,6 +129,20 @@ fn main() -> ExitCode {
         Command::Latency(args) => return latency::command::command(&args, json),
         Command::Scale(args) => return latency::scale::command(&args, json),
         Command::Doctor(args) => return doctor::doctor(&args, json),
+        Command::Test {
+            paths,
+            filter,
+            shuffle,
+            junit,
+        } => {
+            return test::test(&test::Wanted {
+                paths: &paths,
+                filter: filter.as_deref(),
+                shuffle,
+                junit: junit.as_deref(),
+                json,
+            });
+        }
         Command::Modules { name } => return check::modules(name.as_deref(), json),
     };
     match done {

@@ -4,6 +4,8 @@
 //! walker:    1 Stand ──time──► 2 Go ──arrived, or no headway──► 1
 //! attacker:  3 Chase ──close──► 4 Pester ──time──► 2 Go (away) ──arrived──► 1 Stand ──time──► 3
 //!            4 ──robot got away──► 3        3 ──no headway──► 2
+//! cornerer:  as an attacker, but 3 goes to where the robot has the nearest wall behind it, and 4 lasts
+//! talker:    1 and 2 in step with two others: three with one goal, each at an own side of it
 //! scripted:  5 Straight, for ever
 //! ```
 //!
@@ -32,8 +34,22 @@ const STAND_S: (f64, f64) = (2.0, 20.0);
 const BALKED_S: (f64, f64) = (0.5, 3.0);
 /// How long an attacker stands in front of the robot, s.
 const PESTER_S: (f64, f64) = (2.0, 6.0);
+/// How long a cornerer stands before a robot in a corner, s.
+const CORNER_S: (f64, f64) = (6.0, 20.0);
+/// Gap at which a cornerer stops, m.
+const CORNER_OFF_M: (f64, f64) = (0.1, 0.4);
+/// From this distance on a cornerer makes for the open side of the robot, m from middle to middle.
+const CORNER_M: f64 = 0.9;
+/// A wall farther than this from the robot's middle is no corner yet, m.
+const CORNERED_M: f64 = 2.5;
+/// How many stand together and talk.
+pub(crate) const GROUP: usize = 3;
+/// How far from the middle of the group each stands, m.
+const GROUP_RADIUS_M: f64 = 0.5;
+/// How long a group talks in one place, ways there included, s.
+const GROUP_S: f64 = 75.0;
 /// How long an attacker stays away, s.
-const AWAY_S: (f64, f64) = (3.0, 15.0);
+const AWAY_S: (f64, f64) = (15.0, 60.0);
 /// Gap to the robot at which an attacker stops, m; below zero means walking up until they touch.
 const STAND_OFF_M: (f64, f64) = (-0.1, 0.3);
 /// An attacker lets the robot get this much farther than the stand-off before following, m.
@@ -56,6 +72,7 @@ enum Intent {
     Go { goal: usize, via: usize },
     Chase { look_s: f64, via: Option<usize> },
     Pester { until_s: f64 },
+    Join { goal: usize, via: usize },
     Straight { velocity: Vec2 },
 }
 
@@ -63,8 +80,10 @@ enum Intent {
 pub(crate) struct Surroundings<'a> {
     pub(crate) space: &'a Space,
     pub(crate) ways: &'a Ways,
-    /// The robot first, then the people.
+    /// The robots first, then the people.
     pub(crate) discs: &'a [Disc],
+    /// How many robots.
+    pub(crate) robots: usize,
     pub(crate) time_s: f64,
     pub(crate) dt_s: f64,
 }
@@ -74,6 +93,10 @@ pub(crate) struct Person {
     pub(crate) heading: f64,
     /// This person's place in the row of discs.
     index: usize,
+    /// The robot that this person has to do with.
+    prey: usize,
+    /// Number of this person's group, and place in it.
+    group: (usize, usize),
     velocity: Vec2,
     pace: f64,
     stand_off: f64,
@@ -86,15 +109,23 @@ pub(crate) struct Person {
 
 impl Person {
     /// A walker or an attacker, standing for a moment before the first way.
-    pub(crate) fn new(kind: PersonKind, index: usize, at: Vec2, noise: &mut Noise) -> Person {
+    pub(crate) fn new(
+        kind: PersonKind,
+        (index, prey): (usize, usize),
+        group: (usize, usize),
+        at: Vec2,
+        noise: &mut Noise,
+    ) -> Person {
         let pace = match kind {
-            PersonKind::Walker => noise.between(PACE_M_S.0, PACE_M_S.1),
+            PersonKind::Walker | PersonKind::Talker => noise.between(PACE_M_S.0, PACE_M_S.1),
             _ => ATTACK_PACE_M_S,
         };
         Person {
             kind,
             heading: 0.0,
             index,
+            prey,
+            group,
             velocity: Vec2::default(),
             pace,
             stand_off: noise.between(STAND_OFF_M.0, STAND_OFF_M.1),
@@ -113,6 +144,8 @@ impl Person {
             kind: PersonKind::Scripted,
             heading: velocity.angle(),
             index,
+            prey: 0,
+            group: (0, 0),
             velocity,
             pace: velocity.length(),
             stand_off: 0.0,
@@ -157,7 +190,7 @@ impl Person {
 
     /// The direction this person would like to walk in: a unit vector, or zero to stand.
     fn wish(&mut self, at: Vec2, around: &Surroundings<'_>, noise: &mut Noise) -> Vec2 {
-        let robot = around.discs[0];
+        let robot = around.discs[self.prey];
         let gap = robot.gap(&around.discs[self.index]);
         let headway = self.headway(at, around.time_s);
         match self.intent {
@@ -165,7 +198,8 @@ impl Person {
             Intent::Stand { until_s } => {
                 if around.time_s >= until_s {
                     match self.kind {
-                        PersonKind::Attacker => self.chase(around.time_s, noise),
+                        PersonKind::Attacker | PersonKind::Cornerer => self.chase(around.time_s, noise),
+                        PersonKind::Talker => self.join(at, around),
                         _ => self.go(at, around, noise),
                     }
                 }
@@ -181,7 +215,7 @@ impl Person {
                     return to.unit();
                 }
                 if via == goal {
-                    let stay = if self.kind == PersonKind::Attacker {
+                    let stay = if matches!(self.kind, PersonKind::Attacker | PersonKind::Cornerer) {
                         AWAY_S
                     } else {
                         STAND_S
@@ -197,7 +231,12 @@ impl Person {
             }
             Intent::Chase { look_s, via } => {
                 if gap <= self.stand_off.max(0.001) {
-                    let until_s = around.time_s + noise.between(PESTER_S.0, PESTER_S.1);
+                    let stay = if self.kind == PersonKind::Cornerer {
+                        CORNER_S
+                    } else {
+                        PESTER_S
+                    };
+                    let until_s = around.time_s + noise.between(stay.0, stay.1);
                     self.intent = Intent::Pester { until_s };
                 } else if !headway {
                     self.go(at, around, noise);
@@ -208,7 +247,33 @@ impl Person {
                         via,
                     };
                 }
-                (via.map_or(robot.at, |place| around.ways.place(place)) - at).unit()
+                let aim = || {
+                    if self.kind == PersonKind::Cornerer {
+                        open_side(at, robot, around)
+                    } else {
+                        robot.at
+                    }
+                };
+                (via.map_or_else(aim, |place| around.ways.place(place)) - at).unit()
+            }
+            Intent::Join { goal, via } => {
+                if !headway || self.meeting(around).is_none_or(|meeting| meeting != goal) {
+                    self.stand(around.time_s, BALKED_S, noise);
+                    return Vec2::default();
+                }
+                let to = self.spot(around, via, goal) - at;
+                if to.length() > REACHED_M {
+                    return to.unit();
+                }
+                if via == goal {
+                    // Talks until the group moves on.
+                    self.mark_s = around.time_s + HEADWAY.0;
+                    self.heading = (around.ways.place(goal) - at).angle();
+                    return Vec2::default();
+                }
+                let via = around.ways.next(via, goal);
+                self.intent = Intent::Join { goal, via };
+                to.unit()
             }
             Intent::Pester { until_s } => {
                 if around.time_s >= until_s {
@@ -224,7 +289,11 @@ impl Person {
 
     /// False when this person has hardly moved since the last look.
     fn headway(&mut self, at: Vec2, time_s: f64) -> bool {
-        if !matches!(self.intent, Intent::Go { .. } | Intent::Chase { .. }) {
+        let walks = matches!(
+            self.intent,
+            Intent::Go { .. } | Intent::Chase { .. } | Intent::Join { .. }
+        );
+        if !walks {
             (self.mark, self.mark_s) = (at, time_s + HEADWAY.0);
             return true;
         }
@@ -243,7 +312,12 @@ impl Person {
     }
 
     fn chase(&mut self, time_s: f64, noise: &mut Noise) {
-        self.stand_off = noise.between(STAND_OFF_M.0, STAND_OFF_M.1);
+        let off = if self.kind == PersonKind::Cornerer {
+            CORNER_OFF_M
+        } else {
+            STAND_OFF_M
+        };
+        self.stand_off = noise.between(off.0, off.1);
         self.intent = Intent::Chase {
             look_s: time_s,
             via: None,
@@ -261,6 +335,38 @@ impl Person {
         match around.ways.join(around.space, at, Some(goal)) {
             Some(via) => self.intent = Intent::Go { goal, via },
             None => self.stand(around.time_s, STAND_S, noise),
+        }
+    }
+
+    /// Where this person's group meets now: all of it reckons the same.
+    fn meeting(&self, around: &Surroundings<'_>) -> Option<usize> {
+        let goals = around.ways.goals();
+        let turn = (around.time_s / GROUP_S) as u64;
+        let mixed = (turn * 31 + self.group.0 as u64 + 1).wrapping_mul(0x9E37_79B9_7F4A_7C15) >> 33;
+        (!goals.is_empty()).then(|| goals[mixed as usize % goals.len()])
+    }
+
+    /// Sets out for where the group meets.
+    fn join(&mut self, at: Vec2, around: &Surroundings<'_>) {
+        let Some(goal) = self.meeting(around) else { return };
+        if let Some(via) = around.ways.join(around.space, at, Some(goal)) {
+            self.intent = Intent::Join { goal, via };
+            (self.mark, self.mark_s) = (at, around.time_s + HEADWAY.0);
+        }
+    }
+
+    /// The point to walk to for way point `via`: at the goal each has an own side.
+    fn spot(&self, around: &Surroundings<'_>, via: usize, goal: usize) -> Vec2 {
+        let place = around.ways.place(via);
+        if via != goal {
+            return place;
+        }
+        let side = core::f64::consts::TAU * self.group.1 as f64 / GROUP as f64;
+        let spot = place + Vec2::at_angle(side) * GROUP_RADIUS_M;
+        if around.space.passable(place, spot, PERSON_RADIUS_M) {
+            spot
+        } else {
+            place
         }
     }
 
@@ -284,13 +390,14 @@ impl Person {
         let skip_robot = self.careless || matches!(self.intent, Intent::Chase { .. });
         let mut bent = direction;
         for (index, other) in around.discs.iter().enumerate() {
-            if index == self.index || (index == 0 && skip_robot && me.gap(other) > 0.01) {
+            let robot = index < around.robots;
+            if index == self.index || (robot && skip_robot && me.gap(other) > 0.01) {
                 continue;
             }
             let gap = me.gap(other);
             let to = (other.at - me.at).unit();
             let ahead = bent.dot(to);
-            if gap > ASIDE_M || ahead <= 0.3 || (index == 0 && matches!(self.intent, Intent::Chase { .. })) {
+            if gap > ASIDE_M || ahead <= 0.3 || (robot && matches!(self.intent, Intent::Chase { .. })) {
                 continue;
             }
             let nearness = 1.0 - (gap / ASIDE_M).max(0.0);
@@ -302,12 +409,27 @@ impl Person {
     }
 }
 
+/// Where to stand so that the robot has a wall behind it: on the line from the nearest wall through it.
+fn open_side(at: Vec2, robot: Disc, around: &Surroundings<'_>) -> Vec2 {
+    let Some(near) = around.space.nearest(robot.at, CORNERED_M) else {
+        return robot.at;
+    };
+    let side = robot.at + near.away * CORNER_M;
+    // Once there, on to the robot.
+    if (side - at).length() < REACHED_M || (at - robot.at).dot(near.away) > 0.8 * (at - robot.at).length() {
+        robot.at
+    } else {
+        side
+    }
+}
+
 /// Places for people to begin at: free, in reach of the way points, not on top of anybody.
 pub(crate) fn starting_place(
     space: &Space,
     ways: &Ways,
     size: (f64, f64),
     discs: &[Disc],
+    robots: usize,
     noise: &mut Noise,
 ) -> Option<Vec2> {
     /// Draws before giving up: a floor that is nine tenths full still has a free place in it.
@@ -323,7 +445,7 @@ pub(crate) fn starting_place(
         let free = discs
             .iter()
             .enumerate()
-            .all(|(i, other)| disc.gap(other) > if i == 0 { room } else { 0.1 })
+            .all(|(i, other)| disc.gap(other) > if i < robots { room } else { 0.1 })
             && space.nearest(at, PERSON_RADIUS_M + 0.05).is_none();
         let reachable = |place: usize| space.passable(at, ways.place(place), PERSON_RADIUS_M);
         if free && ways.join(space, at, None).is_some_and(reachable) {

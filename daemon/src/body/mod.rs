@@ -53,6 +53,26 @@ pub trait World: Send {
     fn as_any(&mut self) -> &mut dyn std::any::Any;
 }
 
+/// No world at all: commands move nothing, sensors say nothing.
+#[derive(Clone, Copy, Debug)]
+pub struct Nowhere;
+
+impl World for Nowhere {
+    fn tick(&mut self, _: Time, _: &mut WorldEnd) {}
+
+    fn view(&self) -> serde_json::Value {
+        serde_json::Value::Null
+    }
+
+    fn floor(&self) -> serde_json::Value {
+        serde_json::Value::Null
+    }
+
+    fn as_any(&mut self) -> &mut dyn std::any::Any {
+        self
+    }
+}
+
 /// Every kind of body built in.
 pub const BODIES: &[&BodyKind] = &[&office::KIND];
 

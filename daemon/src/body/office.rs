@@ -1,10 +1,16 @@
 //! `office`: Allen's body in the simulated office of the `office` crate.
 //!
 //! ```text
-//!  in:  ping (fires the ring), turn rad/s, forward m/s      out: sonar m, compass rad, odometry
+//!  in:  ping (fires the ring), turn rad/s, forward m/s
+//!  out: sonar m, compass rad, odometry, fan m (the range camera's picture, on its own beat)
 //! ```
 
-use ::office::{Config, Drive, Layout, Office, ROBOT_RADIUS_M};
+use std::sync::{Arc, Mutex, MutexGuard};
+
+use ::office::{
+    CameraModel, Config, Drive, KEPT, Layout, OdometryModel, Office, ROBOT_RADIUS_M, ROBOTS_MAX, SONARS,
+    SonarModel,
+};
 use ipc::clock::{Span, Time};
 use ipc::message::{Kind, Map, Payload, Pose};
 use ipc::wiring::{Declaration, Parameter, Port, Setting, Takes};
@@ -19,6 +25,7 @@ const FORWARD: usize = 2;
 const SONAR: usize = 0;
 const COMPASS: usize = 1;
 const ODOMETRY: usize = 2;
+const FAN: usize = 3;
 
 /// The kind `office`.
 pub static KIND: BodyKind = BodyKind {
@@ -31,8 +38,8 @@ pub static KIND: BodyKind = BodyKind {
 
 static DECLARATION: Declaration = Declaration {
     name: "office",
-    about: "Allen's body, a round robot with twelve sonars, in a simulated office with people",
-    diagram: "ping -> sonar; turn, forward -> motion -> compass, odometry",
+    about: "Allen's body, a round robot with twelve sonars and a range camera, in a simulated office with people",
+    diagram: "ping -> sonar; turn, forward -> motion -> compass, odometry; every picture: fan",
     inputs: &[
         Port::new("ping", Kind::Pulse, "fires the ring of sonars"),
         Port::new("turn", Kind::Number, "turning rate")
@@ -48,105 +55,316 @@ static DECLARATION: Declaration = Declaration {
             .between(0.0, 100.0),
         Port::new("compass", Kind::Number, "which way the robot faces").unit("rad"),
         Port::new("odometry", Kind::Pose, "where the wheels think they are"),
+        Port::new(
+            "fan",
+            Kind::Map,
+            "free distances in twelve strips of sixty degrees ahead, leftmost first",
+        )
+        .unit("m")
+        .between(0.0, 100.0),
     ],
     parameters: &[
-        Parameter {
-            name: "people",
-            takes: Takes::Number {
-                low: 0.0,
-                high: 40.0,
-                default: Some(6.0),
-            },
-            unit: "1",
-            about: "people who walk about",
-        },
-        Parameter {
-            name: "attackers",
-            takes: Takes::Number {
-                low: 0.0,
-                high: 20.0,
-                default: Some(2.0),
-            },
-            unit: "1",
-            about: "people who walk straight at the robot",
-        },
+        count("people", 6.0, 40.0, "people who walk about"),
+        count("attackers", 2.0, 20.0, "people who walk straight at the robot"),
         Parameter {
             name: "layout",
             takes: Takes::Word {
-                words: &["office", "empty"],
+                words: &["office", "empty", "kept", "generated"],
                 default: Some("office"),
             },
             unit: "",
-            about: "rooms and corridor, or one empty room of 8 m by 6 m",
+            about: "the standard office, one empty room of 8 m by 6 m, one of the ten kept, one drawn from a seed",
+        },
+        count(
+            "number",
+            1.0,
+            1e15,
+            "which of the kept offices, or the seed of a generated one",
+        ),
+        count(
+            "talkers",
+            0.0,
+            20.0,
+            "people who stand in groups of three and talk",
+        ),
+        count("cornerers", 0.0, 10.0, "people who corner the robot"),
+        number("noise", 0.02, 1.0, "m", "error of a sonar range, one sigma"),
+        number("dropout", 0.01, 1.0, "1", "share of sonar ranges that are lost"),
+        number(
+            "ghosts",
+            0.3,
+            1.0,
+            "1",
+            "share of mirrored echoes that come home after several bounces",
+        ),
+        number(
+            "cross_talk",
+            0.01,
+            1.0,
+            "1",
+            "share of ranges that are a neighbour's",
+        ),
+        number(
+            "specular",
+            30.0,
+            90.0,
+            "deg",
+            "plain surfaces met at less than this are mirrors to sound",
+        ),
+        number(
+            "polished",
+            55.0,
+            90.0,
+            "deg",
+            "the same for polished surfaces and glass",
+        ),
+        number("cone", 30.0, 60.0, "deg", "full width of a sonar's cone"),
+        Parameter {
+            name: "dead",
+            takes: Takes::Numbers {
+                low: 0.0,
+                high: 11.0,
+                most: 12,
+                default: Some(&[]),
+            },
+            unit: "",
+            about: "sonars that hear nothing, numbered from 0, straight ahead, counter-clockwise",
+        },
+        number("drift", 0.01, 1.0, "1", "error of the wheels' size, one sigma"),
+        number(
+            "slip",
+            0.01,
+            1.0,
+            "m",
+            "error of the odometry after one metre, one sigma",
+        ),
+        number("compass", 0.02, 1.0, "rad", "error of the compass, one sigma"),
+        Parameter {
+            name: "picture",
+            takes: Takes::Span {
+                default: Some(Span::millis(400)),
+            },
+            unit: "",
+            about: "time between two pictures of the range camera",
         },
     ],
 };
 
-/// Allen's body and the office around it.
-pub struct OfficeWorld {
-    /// The simulation.
-    pub office: Office,
+const fn count(name: &'static str, default: f64, high: f64, about: &'static str) -> Parameter {
+    number(name, default, high, "1", about)
+}
+
+const fn number(
+    name: &'static str,
+    default: f64,
+    high: f64,
+    unit: &'static str,
+    about: &'static str,
+) -> Parameter {
+    Parameter {
+        name,
+        takes: Takes::Number {
+            low: 0.0,
+            high,
+            default: Some(default),
+        },
+        unit,
+        about,
+    }
+}
+
+/// An office with what its robots were told last; shared by the bodies in it.
+struct Shared {
+    office: Office,
+    drives: [Drive; ROBOTS_MAX],
     last: Option<Time>,
+}
+
+/// One robot's body and the office around it.
+pub struct OfficeWorld {
+    shared: Arc<Mutex<Shared>>,
+    robot: usize,
     pinged: u64,
-    sonar: [f64; 12],
+    sonar: [f64; SONARS],
     range_max: f64,
+    picture: Span,
+    picture_due: Time,
+}
+
+/// The parameters of a body, by name.
+struct Given<'s>(&'s [Setting]);
+
+impl Given<'_> {
+    fn get(&self, name: &str) -> &Setting {
+        let index = DECLARATION.parameters.iter().position(|p| p.name == name);
+        &self.0[index.unwrap_or_else(|| panic!("the office has no parameter {name:?}"))]
+    }
+
+    fn number(&self, name: &str) -> f64 {
+        match self.get(name) {
+            Setting::Number(number) => *number,
+            other => panic!("{name:?} of the office is {other:?}"),
+        }
+    }
+
+    fn layout(&self) -> Layout {
+        let number = self.number("number") as u64;
+        match self.get("layout") {
+            Setting::Text(word) if word == "empty" => Layout::empty_room(8.0, 6.0),
+            Setting::Text(word) if word == "kept" => {
+                // Any number will do: the ten are counted round.
+                Layout::kept((number.max(1) - 1) as usize % KEPT.len() + 1)
+            }
+            Setting::Text(word) if word == "generated" => Layout::generated(number),
+            _ => Layout::office(),
+        }
+    }
+
+    fn sonar(&self) -> SonarModel {
+        let dead = match self.get("dead") {
+            Setting::Numbers(numbers) => numbers.iter().map(|n| *n as usize).filter(|n| *n < SONARS),
+            other => panic!("the dead sonars are {other:?}"),
+        };
+        SonarModel {
+            noise_m: self.number("noise"),
+            dropout: self.number("dropout"),
+            ghosts: self.number("ghosts"),
+            cross_talk: self.number("cross_talk"),
+            specular_deg: self.number("specular"),
+            polished_deg: self.number("polished"),
+            cone_deg: self.number("cone"),
+            dead: dead.fold(0, |bits, sonar| bits | 1 << sonar),
+            ..SonarModel::default()
+        }
+    }
 }
 
 fn build(settings: &[Setting], seed: u64, start: Option<Place>) -> Box<dyn World> {
-    let [
-        Setting::Number(people),
-        Setting::Number(attackers),
-        Setting::Text(layout),
-    ] = settings
-    else {
-        panic!("settings of the office are checked");
-    };
-    let layout = if layout == "empty" {
-        Layout::empty_room(8.0, 6.0)
-    } else {
-        Layout::office()
-    };
-    let config = Config {
-        seed,
-        people: *people as u32,
-        attackers: *attackers as u32,
-        layout,
-        start,
-        ..Config::default()
-    };
-    let range_max = config.sonar.range_max_m;
-    Box::new(OfficeWorld {
-        office: Office::new(&config),
-        last: None,
-        pinged: 0,
-        sonar: [range_max; 12],
-        range_max,
-    })
+    Box::new(OfficeWorld::new(settings, seed, start, &[]))
+}
+
+impl OfficeWorld {
+    /// The body of the first robot, from checked settings; further robots start at `others`.
+    ///
+    /// # Panics
+    /// When the settings were not checked, or somebody would start inside something.
+    pub fn new(settings: &[Setting], seed: u64, start: Option<Place>, others: &[Place]) -> OfficeWorld {
+        let given = Given(settings);
+        let config = Config {
+            seed,
+            people: given.number("people") as u32,
+            attackers: given.number("attackers") as u32,
+            talkers: given.number("talkers") as u32,
+            cornerers: given.number("cornerers") as u32,
+            layout: given.layout(),
+            sonar: given.sonar(),
+            camera: CameraModel::default(),
+            odometry: OdometryModel {
+                scale_sigma: given.number("drift"),
+                slip_m: given.number("slip"),
+                compass_sigma_rad: given.number("compass"),
+                ..OdometryModel::default()
+            },
+            start,
+            others: others.to_vec(),
+            ..Config::default()
+        };
+        let Setting::Span(picture) = given.get("picture") else {
+            panic!("the time between pictures is checked");
+        };
+        let shared = Shared {
+            office: Office::new(&config),
+            drives: [Drive::default(); ROBOTS_MAX],
+            last: None,
+        };
+        OfficeWorld::of(
+            Arc::new(Mutex::new(shared)),
+            0,
+            config.sonar.range_max_m,
+            *picture,
+        )
+    }
+
+    fn of(shared: Arc<Mutex<Shared>>, robot: usize, range_max: f64, picture: Span) -> OfficeWorld {
+        OfficeWorld {
+            shared,
+            robot,
+            pinged: 0,
+            sonar: [range_max; SONARS],
+            range_max,
+            picture,
+            picture_due: Time::ZERO,
+        }
+    }
+
+    /// The body of the `robot`-th robot of the same office, counted from 0.
+    ///
+    /// # Panics
+    /// When there is no such robot.
+    pub fn fellow(&self, robot: usize) -> OfficeWorld {
+        assert!(robot < self.office().robots(), "there is no robot {robot}");
+        OfficeWorld::of(self.shared.clone(), robot, self.range_max, self.picture)
+    }
+
+    /// The office, for observers and tests.
+    pub fn office(&self) -> OfficeGuard<'_> {
+        OfficeGuard(self.shared.lock().expect("nobody panics holding an office"))
+    }
+}
+
+/// The office of a body, held while it is looked at.
+pub struct OfficeGuard<'w>(MutexGuard<'w, Shared>);
+
+impl core::ops::Deref for OfficeGuard<'_> {
+    type Target = Office;
+    fn deref(&self) -> &Office {
+        &self.0.office
+    }
+}
+
+impl core::ops::DerefMut for OfficeGuard<'_> {
+    fn deref_mut(&mut self) -> &mut Office {
+        &mut self.0.office
+    }
 }
 
 /// Longest step of the physics.
 const STEP_MAX: Span = Span::millis(20);
+/// Longest gap that is made up for; after a longer one the world goes on from where it was.
+const GAP_MAX: Span = Span::secs(1);
+
+impl Shared {
+    /// Lets time pass up to `now` with `robot` under `drive`; whichever robot comes first moves them all.
+    fn advance(&mut self, now: Time, robot: usize, drive: Drive) {
+        self.drives[robot] = drive;
+        let gap = self.last.map_or(Span::ZERO, |last| now.since(last));
+        let mut left = gap.0.min(GAP_MAX.0);
+        self.last = Some(self.last.map_or(now, |last| last.max(now)));
+        while left > 0 {
+            let step = Span(left.min(STEP_MAX.0));
+            self.office.step_all(step.seconds(), &self.drives);
+            left -= step.0;
+        }
+    }
+}
 
 impl World for OfficeWorld {
     fn tick(&mut self, now: Time, link: &mut WorldEnd) {
         let drive = drive(now, link);
-        let mut left = self
-            .last
-            .map_or(Span::ZERO, |last| now.since(last))
-            .0
-            .min(Span::secs(1).0);
-        self.last = Some(now);
-        while left > 0 {
-            let step = Span(left.min(STEP_MAX.0));
-            self.office.step(step.seconds(), drive);
-            left -= step.0;
-        }
+        let mut shared = self.shared.lock().expect("nobody panics holding an office");
+        shared.advance(now, self.robot, drive);
+        let office = &mut shared.office;
         if let Some(ping) = link.commands[PING].newer_than(self.pinged) {
             self.pinged = ping.number;
-            self.sonar = self.office.sonar();
+            self.sonar = office.sonar_of(self.robot);
             link.sensors[SONAR].write(now, &Map { ranges: self.sonar }.pack());
         }
-        let pose = self.office.odometry();
+        if now >= self.picture_due {
+            self.picture_due = now + self.picture;
+            let ranges = office.fan_of(self.robot);
+            link.sensors[FAN].write(now, &Map { ranges }.pack());
+        }
+        let pose = office.odometry_of(self.robot);
         link.sensors[COMPASS].write(now, &pose.heading.pack());
         link.sensors[ODOMETRY].write(
             now,
@@ -160,7 +378,7 @@ impl World for OfficeWorld {
     }
 
     fn view(&self) -> Value {
-        let view = self.office.view();
+        let view = self.office().view();
         json!({
             "robot": view.robot,
             "people": view.people,
@@ -170,7 +388,7 @@ impl World for OfficeWorld {
     }
 
     fn floor(&self) -> Value {
-        let plan = self.office.floor_plan();
+        let plan = self.office().floor_plan();
         let boxes: Vec<Value> = plan
             .blocks
             .iter()

@@ -7,11 +7,7 @@
 //! hard-real-time environment", J. ACM 20(1), 1973): the shorter the period, the higher the priority.
 
 use ipc::clock::Span;
-use ipc::wiring::creature::{Creature, Executor, Layer, Overrun, Policy, Wake};
-
-/// Priority of the motor unit; layers come below it. Above what ordinary programs choose, below the kernel's
-/// own threads at 99.
-pub const PRIORITY_MAX: u8 = 80;
+use ipc::wiring::creature::{Creature, Executor, Layer, Overrun, PRIORITY_MAX, Policy, Wake, rate_monotonic};
 
 /// Share of a period that a SCHED_DEADLINE thread reserves, all threads of one period together. The host
 /// grants 95 % of each processor in all; what is left runs the world and those who watch.
@@ -186,10 +182,7 @@ fn plan(creature: &Creature, groups: &[Vec<usize>], layers: &[usize]) -> Plan {
             let mut periods: Vec<Span> = creature.layers.iter().map(|l| l.period).collect();
             periods.sort();
             periods.dedup();
-            let rank = periods.iter().position(|p| *p == first.period).unwrap_or(0);
-            let rank = u8::try_from(rank).unwrap_or(u8::MAX);
-            let monotonic = PRIORITY_MAX.saturating_sub(rank.saturating_add(1)).max(1);
-            Schedule::Fifo(first.priority.unwrap_or(monotonic))
+            Schedule::Fifo(first.priority.unwrap_or(rate_monotonic(&periods, first.period)))
         }
         Policy::Deadline => reserve(first.period, groups.len() + usize::from(creature.body.is_some())),
     };

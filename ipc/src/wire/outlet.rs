@@ -7,11 +7,13 @@
 //!                                          └─► dropped, counted
 //! ```
 
+use std::sync::Arc;
+
 use super::page::Writer;
-use super::register::{Joined, Plug, TAPS_MAX, TapEnd, TapState, join, release, sweep};
+use super::register::{Joined, Plug, TAPS_MAX, TapEnd, TapGauge, TapState, join, release, sweep, window_of};
 use crate::clock::Time;
 use crate::message::{Payload, WORDS_MAX, Words};
-use crate::tap;
+use crate::tap::{self, Window};
 
 /// What was counted at one output.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -84,46 +86,77 @@ impl Outlet {
         self.staged = true;
     }
 
+    /// Whether a message waits for the end of the beat.
+    pub fn is_staged(&self) -> bool {
+        self.staged
+    }
+
     /// Writes the staged message, stamped `u`, unless an inhibitor's window holds. Says whether it wrote.
     #[inline]
     pub fn commit(&mut self, u: Time, gone: impl FnMut(TapEnd)) -> bool {
-        let open = self.taps.is_empty() || self.decide(u, gone);
-        if !std::mem::take(&mut self.staged) {
+        if !self.taps.is_empty() {
+            self.look(u, gone);
+        }
+        if !std::mem::take(&mut self.staged) || !self.open(u) {
             return false;
         }
-        if open {
-            self.writer.write(u, &self.words);
-            self.counts.emitted += 1;
-        }
-        open
+        self.writer.write(u, &self.words);
+        self.counts.emitted += 1;
+        true
     }
 
-    /// Whether no inhibitor's window holds at `u`; counts what is dropped.
-    fn decide(&mut self, u: Time, gone: impl FnMut(TapEnd)) -> bool {
+    /// Writes a message at once, stamped `u`, as though the module had emitted it then, unless an inhibitor's
+    /// window holds. Says whether it wrote. What is staged stays so.
+    pub fn put(&mut self, u: Time, words: &Words, gone: impl FnMut(TapEnd)) -> bool {
+        self.look(u, gone);
+        if !self.open(u) {
+            return false;
+        }
+        self.writer.write(u, words);
+        self.counts.emitted += 1;
+        true
+    }
+
+    /// Takes in what the inhibitors say.
+    pub fn look(&mut self, now: Time, gone: impl FnMut(TapEnd)) {
+        if self.taps.is_empty() {
+            return;
+        }
         for tap in &mut self.taps {
-            tap.look(u, None);
+            tap.look(now, None);
             if tap.fresh {
                 tap.take_effect();
             }
         }
-        let open = tap::emits(u, self.taps.iter().filter_map(|t| t.window));
-        if !open && self.staged {
-            self.counts.inhibited += 1;
-            if let Some(tap) = self
-                .taps
-                .iter_mut()
-                .rfind(|t| t.window.is_some_and(|w| w.holds(u)))
-            {
-                tap.reject();
-            }
+        sweep(&mut self.taps, now, gone);
+    }
+
+    /// Whether a message may be written at `u`; counts the one that may not.
+    #[inline]
+    fn open(&mut self, u: Time) -> bool {
+        if self.taps.is_empty() || tap::emits(u, self.taps.iter().filter_map(|t| t.window)) {
+            return true;
         }
-        sweep(&mut self.taps, u, gone);
-        open
+        self.counts.inhibited += 1;
+        if let Some(tap) = self
+            .taps
+            .iter_mut()
+            .rfind(|t| t.window.is_some_and(|w| w.holds(u)))
+        {
+            tap.reject();
+        }
+        false
     }
 
     /// What was counted so far.
     pub fn counts(&self) -> OutputCounts {
         self.counts
+    }
+
+    /// The window of the inhibitor that is counted at `gauge`; `None` if it is not joined here or said nothing
+    /// yet.
+    pub fn window_of(&self, gauge: &Arc<TapGauge>) -> Option<Window> {
+        window_of(&self.taps, gauge)
     }
 
     /// The inhibitors on this output, for those who watch.

@@ -207,6 +207,8 @@ pub struct Register {
     holds: bool,
     /// The message held, with its stamp.
     held: (Time, Words),
+    /// Whether a message was delivered since the last gather.
+    pending: bool,
     arrived: bool,
     counts: InputCounts,
     /// Where a message of the existing wire is looked at before it is let in.
@@ -234,6 +236,7 @@ impl Register {
             taps: Vec::with_capacity(TAPS_MAX),
             holds: false,
             held: (Time::ZERO, [0.0; WORDS_MAX]),
+            pending: false,
             arrived: false,
             counts: InputCounts::default(),
             incoming: [0.0; WORDS_MAX],
@@ -255,8 +258,16 @@ impl Register {
     /// has left for good, to be dropped on a thread that may.
     #[inline]
     pub fn gather(&mut self, now: Time, gone: impl FnMut(TapEnd)) {
-        self.arrived = false;
-        let original = self.look(now);
+        self.look(now, gone);
+        self.arrived = std::mem::take(&mut self.pending);
+    }
+
+    /// Looks at the wire and the taps between two beats. What is delivered counts as arrived at the next
+    /// [`Register::gather`]. In real time nobody does this: messages that come faster than the beat
+    /// overwrite each other. On the virtual clock it lets every message meet the rules, not only the newest.
+    #[inline]
+    pub fn look(&mut self, now: Time, gone: impl FnMut(TapEnd)) {
+        let original = self.newest_original(now);
         if self.taps.is_empty() {
             if let Some(stamp) = original {
                 self.deliver(stamp, From::Wire);
@@ -345,7 +356,7 @@ impl Register {
     /// The stamp of the existing wire's newest message, if it was not seen before and is one; its words are
     /// then those incoming.
     #[inline]
-    fn look(&mut self, now: Time) -> Option<Time> {
+    fn newest_original(&mut self, now: Time) -> Option<Time> {
         let (number, stamp) = self.wire.as_ref()?.take_newer(self.seen, &mut self.incoming)?;
         self.seen = number;
         match plausible(stamp, now) {
@@ -390,7 +401,7 @@ impl Register {
         }
         self.held.0 = stamp;
         self.holds = true;
-        self.arrived = true;
+        self.pending = true;
     }
 
     /// The message held, with its stamp; `None` until the first was delivered.
@@ -408,6 +419,7 @@ impl Register {
     /// Forgets the message held: what a reset line does.
     pub fn clear(&mut self) {
         self.holds = false;
+        self.pending = false;
         self.arrived = false;
     }
 
@@ -419,6 +431,11 @@ impl Register {
     /// The taps as they stand in series, for those who watch.
     pub fn taps(&self) -> impl Iterator<Item = TapState> {
         self.taps.iter().map(Joined::state)
+    }
+
+    /// The window of the tap that is counted at `gauge`; `None` if it is not joined here or said nothing yet.
+    pub fn window_of(&self, gauge: &Arc<TapGauge>) -> Option<Window> {
+        window_of(&self.taps, gauge)
     }
 }
 
@@ -456,6 +473,11 @@ pub(super) fn release(taps: &mut [Joined], plug: Plug) {
     for tap in taps.iter_mut().filter(|t| t.end.plug == plug) {
         tap.leaving = true;
     }
+}
+
+pub(super) fn window_of(taps: &[Joined], gauge: &Arc<TapGauge>) -> Option<Window> {
+    let tap = taps.iter().find(|t| Arc::ptr_eq(&t.end.gauge, gauge))?;
+    tap.window
 }
 
 /// Hands over the taps that have left and whose windows have run out.

@@ -11,6 +11,7 @@
 use std::ops::Range;
 
 use ipc::clock::Time;
+use ipc::message::Words;
 use ipc::wire::{Outlet, Register, TapEnd};
 use rtrb::{Consumer, Producer};
 
@@ -137,6 +138,12 @@ impl RunningLayer {
         self.order = order;
     }
 
+    /// Puts every module back in its initial state and empties its registers: the layer begins anew.
+    pub fn restart(&mut self) {
+        self.seats.iter_mut().for_each(|seat| seat.machine.reset());
+        self.registers.iter_mut().for_each(Register::clear);
+    }
+
     /// How many modules there are.
     pub fn len(&self) -> usize {
         self.seats.len()
@@ -155,11 +162,46 @@ impl RunningLayer {
             .map(|s| s.machine.state())
     }
 
-    /// First half of a beat: takes up commands, looks at every register, steps every module.
-    pub fn step(&mut self, now: Time) {
+    /// The n-th input's register: inputs count module by module as they were seated, reset lines included.
+    pub fn register(&self, input: usize) -> &Register {
+        &self.registers[input]
+    }
+
+    /// The n-th output's outlet: outputs count module by module as they were seated.
+    pub fn outlet(&self, output: usize) -> &Outlet {
+        &self.outlets[output]
+    }
+
+    /// How many outputs there are.
+    pub fn outputs(&self) -> usize {
+        self.outlets.len()
+    }
+
+    /// Takes up commands between two beats.
+    pub fn take_up(&mut self) {
         while let Ok(command) = self.commands.pop() {
             self.obey(command);
         }
+    }
+
+    /// Looks at every register and tap between two beats; see [`Register::look`].
+    pub fn look(&mut self, now: Time) {
+        for register in &mut self.registers {
+            register.look(now, |end| give_back(&mut self.returned, end));
+        }
+        for outlet in &mut self.outlets {
+            outlet.look(now, |end| give_back(&mut self.returned, end));
+        }
+    }
+
+    /// Writes a message on the n-th output at once, as though its module emitted it; see [`Outlet::put`].
+    pub fn put(&mut self, output: usize, now: Time, words: &Words) -> bool {
+        self.outlets[output].put(now, words, |end| give_back(&mut self.returned, end))
+    }
+
+    /// First half of a beat: takes up commands, looks at every register, steps every module.
+    pub fn step(&mut self, now: Time) {
+        self.take_up();
         for &index in &self.order {
             let Seat {
                 machine,

@@ -1,14 +1,15 @@
 //! Allen: the first robot of Brooks 1991 §6.2 and figure 2, level by level.
 //!
-//! Level 0, [`level0`], keeps the robot from hitting things; level 1, [`level1`], makes it wander. Each module is
-//! one file with its diagram. The wiring stands in `allen.toml` and, for level 1 as a process of its own,
-//! in `wander.toml`.
+//! Level 0, [`level0`], keeps the robot from hitting things; level 1, [`level1`], makes it wander; level 2,
+//! [`level2`], sets out for distant places. Each module is one file with its diagram. The wiring stands in
+//! `allen.toml` and, for levels as processes of their own, in `wander.toml` and `explore.toml`.
 //!
 //! Must never know the body: it meets it on wires.
 
 pub mod geometry;
 pub mod level0;
 pub mod level1;
+pub mod level2;
 
 use afsm::{Kinds, ModuleKind};
 use ipc::wiring::Source;
@@ -29,7 +30,14 @@ pub const MODULES: &[&ModuleKind] = &[
     &level0::forward::KIND,
     &level1::wander::KIND,
     &level1::avoid::KIND,
+    &level2::whenlook::KIND,
+    &level2::stereo::KIND,
+    &level2::pathplan::KIND,
+    &level2::integrate::KIND,
 ];
+
+/// Level 2 as the manifest of a layer process.
+pub const EXPLORE: &str = include_str!("../explore.toml");
 
 /// The kinds that a layer process of Allen is built with.
 pub fn kinds() -> Kinds {
@@ -39,4 +47,9 @@ pub fn kinds() -> Kinds {
 /// The manifest of level 1.
 pub fn wander_manifest() -> Source {
     Source::new("wander.toml", WANDER)
+}
+
+/// The manifest of level 2.
+pub fn explore_manifest() -> Source {
+    Source::new("explore.toml", EXPLORE)
 }

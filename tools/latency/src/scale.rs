@@ -115,7 +115,9 @@ fn line() -> Value {
 /// The straight line of least squares: slope, offset, and how much of the spread it explains.
 fn fit(points: &[(f64, f64)]) -> (f64, f64, f64) {
     let n = points.len() as f64;
-    let (mx, my) = points.iter().fold((0.0, 0.0), |(a, b), (x, y)| (a + x / n, b + y / n));
+    let (mx, my) = points
+        .iter()
+        .fold((0.0, 0.0), |(a, b), (x, y)| (a + x / n, b + y / n));
     let sum = |f: &dyn Fn(f64, f64) -> f64| points.iter().map(|(x, y)| f(x - mx, y - my)).sum::<f64>();
     let (xx, xy, yy) = (sum(&|x, _| x * x), sum(&|x, y| x * y), sum(&|_, y| y * y));
     let slope = xy / xx;
@@ -182,7 +184,10 @@ fn pace(cpu: usize, layers: usize, each: usize, length: Duration) -> Result<Valu
 /// Nanoseconds that a thread of this process has run.
 fn ran(tid: i32) -> u64 {
     let text = std::fs::read_to_string(format!("/proc/self/task/{tid}/schedstat")).unwrap_or_default();
-    text.split_whitespace().next().and_then(|w| w.parse().ok()).unwrap_or(0)
+    text.split_whitespace()
+        .next()
+        .and_then(|w| w.parse().ok())
+        .unwrap_or(0)
 }
 
 /// What a module and a wire weigh, by what the process grows when there are ten thousand.
@@ -206,7 +211,11 @@ const CELL_BYTES: u64 = 128;
 /// Bytes of this process that are in memory.
 fn resident() -> u64 {
     let text = std::fs::read_to_string("/proc/self/statm").unwrap_or_default();
-    let pages = text.split_whitespace().nth(1).and_then(|w| w.parse::<u64>().ok()).unwrap_or(0);
+    let pages = text
+        .split_whitespace()
+        .nth(1)
+        .and_then(|w| w.parse::<u64>().ok())
+        .unwrap_or(0);
     pages * rustix::param::page_size() as u64
 }
 
@@ -230,7 +239,9 @@ fn print(report: &Value) {
         hot("offset_ns"),
         hot("r_squared")
     );
-    println!("| at 1 kHz | wires | share of a processor | beat p50, µs | p99, µs | a module, ns |\n|---|---:|---:|---:|---:|---:|");
+    println!(
+        "| at 1 kHz | wires | share of a processor | beat p50, µs | p99, µs | a module, ns |\n|---|---:|---:|---:|---:|---:|"
+    );
     for row in report["at_1khz"].as_array().into_iter().flatten() {
         let f = |key: &str| row[key].as_f64().unwrap_or(0.0);
         println!(

@@ -18,7 +18,11 @@ pub(super) fn look(period: Option<Span>) -> Vec<Finding> {
     let asked = period.is_some();
     vec![
         tried("SCHED_FIFO", asked, on_a_thread(|| host::schedule_fifo(80))),
-        tried("SCHED_DEADLINE", false, on_a_thread(|| host::schedule_deadline(Span::micros(100), Span::millis(10), false))),
+        tried(
+            "SCHED_DEADLINE",
+            false,
+            on_a_thread(|| host::schedule_deadline(Span::micros(100), Span::millis(10), false)),
+        ),
         tried("locked memory", asked, lock()),
         limits(),
         privileges(),
@@ -41,7 +45,10 @@ fn lock() -> Result<(), Refusal> {
         }
         Err(e) => Err(Refusal {
             call: "mlockall was granted, but then pthread_create".into(),
-            errno: e.raw_os_error().map_or_else(|| e.to_string(), |code| host::name(rustix::io::Errno::from_raw_os_error(code))),
+            errno: e.raw_os_error().map_or_else(
+                || e.to_string(),
+                |code| host::name(rustix::io::Errno::from_raw_os_error(code)),
+            ),
             grants: "the limit of locked memory is too small for the threads' stacks".into(),
         }),
     }
@@ -63,14 +70,30 @@ fn limits() -> Finding {
     let memory = getrlimit(Resource::Memlock).current;
     let priority = getrlimit(Resource::Rtprio).current;
     let time = getrlimit(Resource::Rttime).current;
-    let found = format!("memlock {} bytes, rtprio {}, rttime {} us", show(memory), show(priority), show(time));
-    Finding::new("limits", found, Bearing::Good, "what counts is whether the calls above are granted")
+    let found = format!(
+        "memlock {} bytes, rtprio {}, rttime {} us",
+        show(memory),
+        show(priority),
+        show(time)
+    );
+    Finding::new(
+        "limits",
+        found,
+        Bearing::Good,
+        "what counts is whether the calls above are granted",
+    )
 }
 
 /// What of the process's standing explains refusals.
 fn privileges() -> Finding {
     let status = text("/proc/self/status").unwrap_or_default();
-    let field = |name: &str| status.lines().find_map(|l| l.strip_prefix(name)).map(str::trim).unwrap_or("");
+    let field = |name: &str| {
+        status
+            .lines()
+            .find_map(|l| l.strip_prefix(name))
+            .map(str::trim)
+            .unwrap_or("")
+    };
     let effective = u64::from_str_radix(field("CapEff:"), 16).unwrap_or(0);
     let has = |bit: u32| if effective & (1 << bit) != 0 { "yes" } else { "no" };
     let mut traps = Vec::new();

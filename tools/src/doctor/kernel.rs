@@ -36,7 +36,10 @@ fn preemption(period: Option<Span>) -> Finding {
             "neither /sys/kernel nor the kernel's configuration could be read",
         );
     };
-    let held = MODELS.iter().find(|(name, _)| *name == model).map_or(Span::millis(20), |(_, held)| *held);
+    let held = MODELS
+        .iter()
+        .find(|(name, _)| *name == model)
+        .map_or(Span::millis(20), |(_, held)| *held);
     let bearing = match period {
         Some(period) if period < held => Bearing::Bad,
         _ if model == "rt" => Bearing::Good,
@@ -63,7 +66,9 @@ fn model() -> Option<(String, &'static str)> {
         return Some(("rt".into(), "uname -v"));
     }
     if let Some(models) = text("/sys/kernel/debug/sched/preempt") {
-        let chosen = models.split_whitespace().find_map(|m| m.strip_prefix('(')?.strip_suffix(')'));
+        let chosen = models
+            .split_whitespace()
+            .find_map(|m| m.strip_prefix('(')?.strip_suffix(')'));
         return chosen.map(|m| (m.to_string(), "/sys/kernel/debug/sched/preempt"));
     }
     let line = text("/proc/cmdline").unwrap_or_default();
@@ -90,7 +95,9 @@ pub(super) fn configuration() -> Option<String> {
     }
     let packed = std::fs::File::open("/proc/config.gz").ok()?;
     let mut config = String::new();
-    flate2::read::GzDecoder::new(packed).read_to_string(&mut config).ok()?;
+    flate2::read::GzDecoder::new(packed)
+        .read_to_string(&mut config)
+        .ok()?;
     Some(config)
 }
 
@@ -132,12 +139,18 @@ fn throttling() -> Vec<Finding> {
 fn clock_source() -> Finding {
     let base = "/sys/devices/system/clocksource/clocksource0";
     let current = text(&format!("{base}/current_clocksource")).unwrap_or_else(|| "unknown".into());
-    let quick = ["tsc", "kvm-clock", "hyperv_clocksource_tsc_page", "arch_sys_counter"];
+    let quick = [
+        "tsc",
+        "kvm-clock",
+        "hyperv_clocksource_tsc_page",
+        "arch_sys_counter",
+    ];
     if quick.contains(&current.as_str()) {
         return Finding::new("clock source", current, Bearing::Good, "");
     }
     let others = text(&format!("{base}/available_clocksource")).unwrap_or_default();
-    let means = "reading it takes a system call or a slow device: a microsecond and more, several times a beat";
+    let means =
+        "reading it takes a system call or a slow device: a microsecond and more, several times a beat";
     let finding = Finding::new("clock source", current, Bearing::Note, means);
     match quick.iter().find(|q| others.split_whitespace().any(|o| o == **q)) {
         Some(better) => finding.change(format!("clocksource={better} on the kernel's command line")),

@@ -55,7 +55,12 @@ pub struct Finding {
 }
 
 impl Finding {
-    fn new(what: &'static str, found: impl Into<String>, bearing: Bearing, means: impl Into<String>) -> Finding {
+    fn new(
+        what: &'static str,
+        found: impl Into<String>,
+        bearing: Bearing,
+        means: impl Into<String>,
+    ) -> Finding {
         Finding {
             what,
             found: found.into(),
@@ -85,11 +90,18 @@ pub fn doctor(args: &DoctorArgs, json: bool) -> ExitCode {
     let kept = bad == 0;
     if json {
         let period = args.period.map(|p| p.0);
-        println!("{:#}", json!({ "period_ns": period, "guaranteed": args.period.map(|_| kept), "findings": findings }));
+        println!(
+            "{:#}",
+            json!({ "period_ns": period, "guaranteed": args.period.map(|_| kept), "findings": findings })
+        );
     } else {
         show(&findings, args.period, bad);
     }
-    if args.period.is_some() && !kept { ExitCode::FAILURE } else { ExitCode::SUCCESS }
+    if args.period.is_some() && !kept {
+        ExitCode::FAILURE
+    } else {
+        ExitCode::SUCCESS
+    }
 }
 
 fn show(findings: &[Finding], period: Option<Span>, bad: usize) {
@@ -108,11 +120,16 @@ fn show(findings: &[Finding], period: Option<Span>, bad: usize) {
         }
     }
     match period {
-        None => println!("\nno period was asked for; `subsumectl doctor --period 1ms` says whether it can be kept"),
+        None => println!(
+            "\nno period was asked for; `subsumectl doctor --period 1ms` says whether it can be kept"
+        ),
         Some(period) if bad == 0 => println!(
             "\nnothing here stands against a period of {period}; how late beats are, `subsumectl latency --period {period}` measures"
         ),
-        Some(period) => println!("\na period of {period} cannot be guaranteed here: {bad} of {} findings stand against it", findings.len()),
+        Some(period) => println!(
+            "\na period of {period} cannot be guaranteed here: {bad} of {} findings stand against it",
+            findings.len()
+        ),
     }
 }
 

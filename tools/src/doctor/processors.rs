@@ -46,7 +46,12 @@ fn frequency() -> Finding {
     governors.sort();
     governors.dedup();
     match &governors[..] {
-        [] => Finding::new("frequency", "not ours to set", Bearing::Good, "no cpufreq: fixed, or the hypervisor's"),
+        [] => Finding::new(
+            "frequency",
+            "not ours to set",
+            Bearing::Good,
+            "no cpufreq: fixed, or the hypervisor's",
+        ),
         [only] if only == "performance" => Finding::new("frequency", "performance", Bearing::Good, ""),
         others => Finding::new(
             "frequency",
@@ -71,7 +76,11 @@ fn idle(period: Option<Span>) -> Finding {
         .collect();
     let found = match states.is_empty() {
         true => "none the kernel knows of".to_string(),
-        false => states.iter().map(|(name, us)| format!("{name} {us} us")).collect::<Vec<_>>().join(", "),
+        false => states
+            .iter()
+            .map(|(name, us)| format!("{name} {us} us"))
+            .collect::<Vec<_>>()
+            .join(", "),
     };
     match states.iter().any(|(_, us)| *us > slow_from) {
         false => Finding::new("idle states", found, Bearing::Good, ""),
@@ -91,7 +100,12 @@ fn numbered(folder: &str, prefix: &str) -> Vec<String> {
         .into_iter()
         .flatten()
         .flatten()
-        .filter(|e| e.file_name().to_string_lossy().strip_prefix(prefix).is_some_and(|n| n.parse::<u32>().is_ok()))
+        .filter(|e| {
+            e.file_name()
+                .to_string_lossy()
+                .strip_prefix(prefix)
+                .is_some_and(|n| n.parse::<u32>().is_ok())
+        })
         .map(|e| e.path().display().to_string())
         .collect();
     found.sort();

@@ -26,12 +26,22 @@ fn room() -> Finding {
     let (size, free) = (stat.f_blocks * stat.f_frsize, stat.f_bavail * stat.f_frsize);
     let found = format!("{} MiB free of {} MiB", free >> 20, size >> 20);
     if stat.f_flag.contains(StatVfsMountFlags::RDONLY) {
-        return Finding::new("/dev/shm", format!("{found}, read-only"), Bearing::Bad, "wires cannot be shared")
-            .change("mount -o remount,rw /dev/shm");
+        return Finding::new(
+            "/dev/shm",
+            format!("{found}, read-only"),
+            Bearing::Bad,
+            "wires cannot be shared",
+        )
+        .change("mount -o remount,rw /dev/shm");
     }
     if free < ROOM_MIN {
-        return Finding::new("/dev/shm", found, Bearing::Bad, "wires may not fit; touching one that doesn't ends a process (SIGBUS)")
-            .change("mount -o remount,size=256M /dev/shm (containers: --shm-size=256m)");
+        return Finding::new(
+            "/dev/shm",
+            found,
+            Bearing::Bad,
+            "wires may not fit; touching one that doesn't ends a process (SIGBUS)",
+        )
+        .change("mount -o remount,size=256M /dev/shm (containers: --shm-size=256m)");
     }
     Finding::new("/dev/shm", found, Bearing::Good, "")
 }
@@ -65,7 +75,10 @@ fn in_use() -> HashSet<String> {
     for process in std::fs::read_dir("/proc").into_iter().flatten().flatten() {
         let path = process.path();
         let maps = std::fs::read_to_string(path.join("maps")).unwrap_or_default();
-        let mapped = maps.lines().filter_map(|l| l.split_once("/dev/shm/")).map(|(_, name)| name.to_string());
+        let mapped = maps
+            .lines()
+            .filter_map(|l| l.split_once("/dev/shm/"))
+            .map(|(_, name)| name.to_string());
         used.extend(mapped);
         for open in std::fs::read_dir(path.join("fd")).into_iter().flatten().flatten() {
             if let Ok(target) = std::fs::read_link(open.path())
@@ -90,9 +103,17 @@ fn sockets() -> Finding {
             }
         }
     }
-    let found = format!("{alive} daemons alive, {dead} sockets of dead ones ({})", folder.display());
+    let found = format!(
+        "{alive} daemons alive, {dead} sockets of dead ones ({})",
+        folder.display()
+    );
     match dead {
         0 => Finding::new("control sockets", found, Bearing::Good, ""),
-        _ => Finding::new("control sockets", found, Bearing::Note, "a daemon of that name takes its socket over when it starts"),
+        _ => Finding::new(
+            "control sockets",
+            found,
+            Bearing::Note,
+            "a daemon of that name takes its socket over when it starts",
+        ),
     }
 }
