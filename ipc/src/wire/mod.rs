@@ -15,4 +15,6 @@ mod sync;
 pub use cell::{LAYOUT, Reading};
 pub use outlet::{Outlet, OutputCounts};
 pub use page::{Page, Reader, WIRES_MAX, Writer};
-pub use register::{InputCounts, Limits, Plug, Register, TAPS_MAX, TapCounts, TapEnd, TapGauge, TapState};
+pub use register::{
+    InputCounts, Limits, Plug, Register, Room, TAPS_MAX, TapCounts, TapEnd, TapGauge, TapState,
+};

@@ -10,7 +10,7 @@
 use std::sync::Arc;
 
 use super::page::Writer;
-use super::register::{Joined, Plug, TAPS_MAX, TapEnd, TapGauge, TapState, join, release, sweep, window_of};
+use super::register::{Joined, Plug, TapEnd, TapGauge, TapState, join, release, sweep, window_of};
 use crate::clock::Time;
 use crate::message::{Payload, WORDS_MAX, Words};
 use crate::tap::{self, Window};
@@ -43,12 +43,12 @@ impl Outlet {
             writer,
             staged: false,
             words: [0.0; WORDS_MAX],
-            taps: Vec::with_capacity(TAPS_MAX),
+            taps: Vec::new(),
             counts: OutputCounts::default(),
         }
     }
 
-    /// Joins an inhibitor. Does not allocate. `Err` gives it back when [`TAPS_MAX`] stand there already.
+    /// Joins an inhibitor. Does not allocate if it brings [`Room::full`](super::Room::full). `Err` gives it back when [`TAPS_MAX`] stand there already.
     pub fn inhibit(&mut self, end: TapEnd) -> Result<(), TapEnd> {
         join(&mut self.taps, end)
     }

@@ -39,6 +39,26 @@ pub struct TapEnd {
     pub plug: Plug,
     /// Where what happens at it is counted, for those who watch.
     pub gauge: Arc<TapGauge>,
+    /// Room at its port for it and those before it. A tap that is joined while its layer beats brings it along;
+    /// one that is joined when the layer is built needs none.
+    pub room: Room,
+}
+
+/// Memory for the taps of one port, made by whoever may allocate and given back with the tap that brought it.
+/// Most ports are never tapped, so they have none of their own.
+#[derive(Debug, Default)]
+pub struct Room(Vec<Joined>);
+
+impl Room {
+    /// No room: for ports of a layer that does not beat yet.
+    pub fn none() -> Room {
+        Room(Vec::new())
+    }
+
+    /// Room for as many taps as a port may have.
+    pub fn full() -> Room {
+        Room(Vec::with_capacity(TAPS_MAX))
+    }
 }
 
 /// Counters of a tap that other threads may look at.
@@ -233,7 +253,7 @@ impl Register {
             },
             wire,
             seen: 0,
-            taps: Vec::with_capacity(TAPS_MAX),
+            taps: Vec::new(),
             holds: false,
             held: (Time::ZERO, [0.0; WORDS_MAX]),
             pending: false,
@@ -244,7 +264,7 @@ impl Register {
     }
 
     /// Joins a suppressor: after those of lower or equal level, before those of higher level. Does not
-    /// allocate. `Err` gives the tap back when [`TAPS_MAX`] stand there already.
+    /// allocate if the tap brings [`Room::full`]. `Err` gives the tap back when [`TAPS_MAX`] stand there already.
     pub fn suppress(&mut self, end: TapEnd) -> Result<(), TapEnd> {
         join(&mut self.taps, end)
     }
@@ -459,6 +479,13 @@ fn plausible(stamp: Time, now: Time) -> Option<Time> {
 pub(super) fn join(taps: &mut Vec<Joined>, end: TapEnd) -> Result<(), TapEnd> {
     if taps.len() == TAPS_MAX {
         return Err(end);
+    }
+    let mut end = end;
+    if taps.len() == taps.capacity() && end.room.0.capacity() > taps.len() {
+        // Moves into the room that came along; the old one leaves with the tap.
+        let mut room = std::mem::take(&mut end.room.0);
+        room.append(taps);
+        end.room.0 = std::mem::replace(taps, room);
     }
     let place = taps
         .iter()

@@ -8,7 +8,7 @@ use std::sync::Arc;
 use ipc::clock::{Span, Time};
 use ipc::message::{Kind, Payload};
 use ipc::tap::{self, Window};
-use ipc::wire::{Outlet, Page, Register, TapEnd, TapGauge};
+use ipc::wire::{Outlet, Page, Register, Room, TapEnd, TapGauge};
 
 use crate::rig::{BEAT, LIMITS, Rig};
 
@@ -112,6 +112,7 @@ fn register(fresh: bool, tapped: bool) -> Box<dyn FnMut()> {
             level: 1,
             plug: 0,
             gauge: Arc::new(TapGauge::default()),
+            room: Room::none(),
         };
         register.suppress(tap).expect("there is room for one");
     }

@@ -130,9 +130,13 @@ fn ask(args: &LatencyArgs) -> Result<Asked, String> {
     if args.against.is_some() && args.round_seconds < 1.0 {
         return Err("--round-seconds: expected at least 1".into());
     }
-    if args.period < Span::micros(100) || args.period > Span::millis(100) || args.period.0 % 2_000 != 0 {
+    if args.period < Span::micros(100)
+        || args.period > Span::millis(100)
+        || args.period.0 % 2_000 != 0
+        || 1_000_000_000 % args.period.0 != 0
+    {
         return Err(format!(
-            "--period {}: expected an even number of microseconds from 100us to 100ms (half of it lies between two beats)",
+            "--period {}: expected an even number of microseconds from 100us to 100ms of which a second is a multiple",
             args.period
         ));
     }

@@ -113,8 +113,10 @@ pub fn round(
         (Span::ZERO, half)
     };
     let beats = (setting.round.as_nanos() as u64 / setting.period.0).max(1);
-    // The reference begins at a full second of the monotonic clock; so do we.
-    let begin = Time((clock::monotonic().0 / 1_000_000_000 + 2) * 1_000_000_000);
+    // The reference begins at a full second of the monotonic clock. We are there before it: full seconds are
+    // points of our grid, as a second is a whole number of periods.
+    let soon = clock::monotonic() + Span::millis(100);
+    let begin = Time((soon.0 / setting.period.0 + 1) * setting.period.0);
     let wake = match contest {
         Contest::Spin => Wake::Spin(setting.spin),
         _ => Wake::Sleep,

@@ -14,7 +14,7 @@ use afsm::layer::{Hand, RunningLayer};
 use afsm::{Beat, In, Module, ModuleKind, Out};
 use ipc::clock::{Span, Time};
 use ipc::message::{Kind, Payload};
-use ipc::wire::{Limits, Outlet, Page, Register, TapEnd, TapGauge, Writer};
+use ipc::wire::{Limits, Outlet, Page, Register, Room, TapEnd, TapGauge, Writer};
 use ipc::wiring::{Declaration, Port};
 
 const A: In<f64> = In::at(0);
@@ -168,6 +168,7 @@ fn ports(page: &Arc<Page>, i: usize, n: usize) -> (Vec<Register>, Outlet) {
         level: 1,
         plug: 0,
         gauge: Arc::new(TapGauge::default()),
+        room: Room::none(),
     };
     a.suppress(tap).expect("there is room for one");
     let b = Register::new(LIMITS, reader((i + 2 * n - 2) % n));

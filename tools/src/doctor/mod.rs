@@ -21,7 +21,7 @@ use serde_json::json;
     subsumectl --json doctor            the same for a program\n\n\
     What holds for the daemon is what its own unit is granted: run it there, with the same user and limits.\n\
     Status: 0 fit, or no period was asked for; 1 the period cannot be guaranteed; 2 bad input.")]
-pub struct DoctorArgs {
+pub(crate) struct DoctorArgs {
     /// The period that is to be kept
     #[arg(long, value_name = "TIME", value_parser = Span::parse)]
     period: Option<Span>,
@@ -30,7 +30,7 @@ pub struct DoctorArgs {
 /// How a finding bears on a period.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Bearing {
+pub(crate) enum Bearing {
     /// As it should be.
     Good,
     /// To know; it takes no guarantee away.
@@ -41,17 +41,17 @@ pub enum Bearing {
 
 /// What was found out about one thing.
 #[derive(Clone, Debug, Serialize)]
-pub struct Finding {
+pub(crate) struct Finding {
     /// What was looked at.
-    pub what: &'static str,
+    what: &'static str,
     /// What was found.
-    pub found: String,
+    found: String,
     /// How it bears on the period.
-    pub bearing: Bearing,
+    bearing: Bearing,
     /// What that means.
-    pub means: String,
+    means: String,
     /// What to change, word by word; empty if nothing.
-    pub change: String,
+    change: String,
 }
 
 impl Finding {
@@ -77,7 +77,7 @@ impl Finding {
 }
 
 /// Looks at the host.
-pub fn doctor(args: &DoctorArgs, json: bool) -> ExitCode {
+pub(crate) fn doctor(args: &DoctorArgs, json: bool) -> ExitCode {
     if args.period == Some(Span::ZERO) {
         eprintln!("subsumectl doctor: --period: expected a time longer than zero, such as \"1ms\"");
         return ExitCode::from(2);
