@@ -12,11 +12,13 @@ fn beats(now: Time) -> Vec<Seen> {
     let mut all = Vec::new();
     let commands = [None, Some(now), Some(now - STALE), Some(now - Span(STALE.0 + 1))];
     let reflexes = [None, Some(now), Some(now - Span(HOLD.0 - 1)), Some(now - HOLD)];
-    let latched = [Causes::NONE, Causes::OVERRUN, Causes::EMERGENCY, Causes::SHUTDOWN];
+    let latched = [Causes::NONE, Causes::EMERGENCY, Causes::SHUTDOWN];
+    // What others see standing: one that latches, one that ends with its cause.
+    let standing = [Causes::NONE, Causes::VITAL, Causes::STALE];
     for oldest_command in commands {
         for reflex in reflexes {
-            for latched in latched {
-                for bits in 0..16_u8 {
+            for (latched, standing) in latched.iter().flat_map(|l| standing.map(|s| (*l, s))) {
+                for bits in 0..8_u8 {
                     let bit = |k: u8| bits >> k & 1 == 1;
                     all.push(Seen {
                         now,
@@ -24,9 +26,9 @@ fn beats(now: Time) -> Vec<Seen> {
                         unsound: bit(0),
                         reflex,
                         vital_began: bit(1),
-                        vital_late: bit(2),
+                        standing,
                         latched,
-                        reset: bit(3),
+                        reset: bit(2),
                     });
                 }
             }
@@ -63,9 +65,12 @@ fn model(history: &[Seen]) -> (Causes, Passage) {
     let from = history.iter().rposition(|s| s.reset).unwrap_or(0);
     for (n, seen) in history.iter().enumerate().skip(from) {
         causes = causes.with(seen.latched);
-        if seen.vital_late && first_good.is_some_and(|good| good <= n) {
+        if seen.standing == Causes::VITAL && first_good.is_some_and(|good| good <= n) {
             causes = causes.with(Causes::VITAL);
         }
+    }
+    if last.standing == Causes::STALE {
+        causes = causes.with(Causes::STALE);
     }
     let passage = if causes == Causes::NONE {
         Passage::Open

@@ -8,10 +8,13 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use clap::Parser;
+use daemon::admission::Admission;
 use daemon::control::{self, Control};
 use daemon::executor::host;
-use daemon::machine::{Machine, kinds};
+use daemon::feeder::Fed;
+use daemon::machine::{Machine, cells_apart, kinds};
 use daemon::running::{self, Running};
+use daemon::segment;
 use daemon::view::View;
 use ipc::wire::iceoryx::Domain;
 use ipc::wiring::creature::Creature;
@@ -29,7 +32,8 @@ static ALLOCATOR: daemon::alloc::Counting = daemon::alloc::Counting;
     subsumed                                the built-in creature Allen in its office\n  \
     subsumed --creature mine.toml           a creature of your own\n  \
     subsumed --headless --seconds 60        one minute, nothing to look at\n  \
-    subsumed --name jerry --page-port 0     a second instance beside the first\n\n\
+    subsumed --name jerry --page-port 0     a second instance beside the first\n  \
+    subsumed --body hall                    the body lives in another process: `subsumed-body --name hall`\n\n\
     Ctrl-C halts the body, then leaves.\n\
     Status: 0 after a signal or --seconds; 1 when the host refuses; 2 for bad input."
 )]
@@ -40,6 +44,9 @@ struct Options {
     /// Name of this instance; the creature's own if not given
     #[arg(long)]
     name: Option<String>,
+    /// Name of the process that runs the body (see `subsumed-body`); without it, this one does
+    #[arg(long, value_name = "NAME")]
+    body: Option<String>,
     /// Port of the live page on 127.0.0.1; 0 for any that is free
     #[arg(long, default_value_t = 4686, value_name = "N")]
     page_port: u16,
@@ -92,13 +99,18 @@ fn load(options: &Options) -> Result<Creature, String> {
     let mut creature = check::creature(&source, &kinds()).map_err(|rejected| rejected.to_string())?;
     creature.seed = options.seed.unwrap_or(creature.seed);
     if let Some(name) = &options.name {
-        let sound = |c: char| c.is_ascii_alphanumeric() || c == '-' || c == '_';
-        if name.is_empty() || name.len() > 48 || !name.chars().all(sound) {
-            return Err(format!(
-                "--name {name:?}: expected 1 to 48 letters, digits, '-' or '_'"
-            ));
+        if !daemon::is_name(name) {
+            return Err(format!("--name {name:?}: {}", daemon::NAME_EXPECTED));
         }
         creature.name = name.clone();
+    }
+    if let Some(body) = &options.body {
+        if !daemon::is_name(body) {
+            return Err(format!("--body {body:?}: {}", daemon::NAME_EXPECTED));
+        }
+        if creature.body.is_none() {
+            return Err(format!("--body {body:?}: the creature has no [body]"));
+        }
     }
     if options.seconds.is_some_and(|s| !s.is_finite() || s <= 0.0) {
         return Err("--seconds: expected a number of seconds above zero".into());
@@ -116,15 +128,24 @@ fn run(options: &Options, creature: Creature) -> Result<(), String> {
     let _ = host::be_ordinary();
     let name = creature.name.clone();
     control::claim(&name).map_err(|e| e.to_string())?;
+    segment::guard().map_err(|e| format!("a handler for SIGBUS: {e}"))?;
     let domain = Domain::join(&name).map_err(|e| e.to_string())?;
-    let owned = domain
-        .own(&name, output_ports(&creature).count())
-        .map_err(|e| e.to_string())?;
-    let machine = Machine::new(creature, &kinds(), owned.page().clone(), None);
-    let running =
-        running::start(&name, machine, owned, domain).map_err(|e| format!("starting threads: {e}"))?;
-    let control =
-        Control::open(&name, running.shared.clone()).map_err(|e| format!("the control socket: {e}"));
+    let cells = match options.body {
+        Some(_) => cells_apart(&creature),
+        None => output_ports(&creature).count(),
+    };
+    let owned = domain.own(&name, cells).map_err(|e| e.to_string())?;
+    let admission = Admission::of(&creature.outsiders)?;
+    let fed = Fed::open(creature.halt.watchdog_device.as_deref()).map_err(|e| e.to_string())?;
+    let machine = match options.body {
+        Some(_) => Machine::apart(creature, &kinds(), owned.page().clone()),
+        None => Machine::new(creature, &kinds(), owned.page().clone(), None),
+    };
+    let body = options.body.as_deref();
+    let running = running::start(&name, machine, owned, domain, body, fed)
+        .map_err(|e| format!("starting threads: {e}"))?;
+    let control = Control::open(&name, running.shared.clone(), admission)
+        .map_err(|e| format!("the control socket: {e}"));
     let page = serve_page(options, &running);
     let result = control.and_then(|control| page.map(|page| (control, page)));
     let result = result.map(|(control, page)| {
@@ -132,6 +153,9 @@ fn run(options: &Options, creature: Creature) -> Result<(), String> {
             introduce(&running, page.as_ref());
         }
         wait(options, &leave);
+        if segment::cut() > 0 {
+            running.leave_cut();
+        }
         // Nobody is answered any more while the body comes to a halt.
         drop((control, page));
     });
@@ -178,7 +202,8 @@ fn introduce(running: &Running, page: Option<&page::Server>) {
 fn wait(options: &Options, leave: &AtomicBool) {
     let began = Instant::now();
     let limit = options.seconds.map(Duration::from_secs_f64);
-    while !leave.load(Ordering::Relaxed) && limit.is_none_or(|limit| began.elapsed() < limit) {
+    let goes_on = || !leave.load(Ordering::Relaxed) && segment::cut() == 0;
+    while goes_on() && limit.is_none_or(|limit| began.elapsed() < limit) {
         std::thread::sleep(Duration::from_millis(20));
     }
 }

@@ -8,86 +8,20 @@
 //! Must never allocate, lock or wait in a beat; nothing a tap does reaches the gate's own inputs.
 
 use std::sync::Arc;
-use std::sync::atomic::{AtomicU64, Ordering};
 
 use afsm::assemble::{FiledTap, Wires, join};
 use ipc::clock::{Span, Time};
 use ipc::message::{WORDS_MAX, Words};
-use ipc::wire::{Reader, Register, Writer};
+use ipc::wire::{AHEAD_MAX, Reader, Register, Writer};
 use ipc::wiring::Declaration;
 use ipc::wiring::creature::{BODY, Creature, How, PortName};
 
 use crate::body::{self, BodyKind, MotorEnd};
 use crate::executor::gauge::BeatGauge;
 use crate::gate::{Causes, Gate, Passage, Seen};
-
-/// The halt channel: how others close the gate, and how all can see whether it is closed.
-#[derive(Debug)]
-pub struct HaltChannel {
-    /// Causes that stand now, latched by others; bits of [`Causes`].
-    standing: AtomicU64,
-    /// Number of resets asked for.
-    resets: AtomicU64,
-    /// What the gate decided last; bits of [`Causes`].
-    decided: AtomicU64,
-    /// When that last changed.
-    since: AtomicU64,
-}
-
-impl Default for HaltChannel {
-    /// Nothing is latched; the gate has not opened yet.
-    fn default() -> Self {
-        HaltChannel {
-            standing: AtomicU64::new(0),
-            resets: AtomicU64::new(0),
-            decided: AtomicU64::new(Causes::START.0),
-            since: AtomicU64::new(0),
-        }
-    }
-}
-
-impl HaltChannel {
-    /// Closes the gate for `cause`.
-    pub fn halt(&self, cause: Causes) {
-        // Relaxed: the bit is the message.
-        self.standing.fetch_or(cause.0, Ordering::Relaxed);
-    }
-
-    /// The causes that others have latched.
-    pub fn standing(&self) -> Causes {
-        Causes(self.standing.load(Ordering::Relaxed))
-    }
-
-    /// Ends what is latched.
-    ///
-    /// # Errors
-    /// When the daemon is leaving.
-    pub fn reset(&self) -> Result<(), String> {
-        let standing = Causes(self.standing.load(Ordering::Relaxed));
-        if standing.has(Causes::SHUTDOWN) {
-            return Err("the daemon is shutting down; start it again to go on".into());
-        }
-        self.standing.fetch_and(!standing.0, Ordering::Relaxed);
-        self.resets.fetch_add(1, Ordering::Relaxed);
-        Ok(())
-    }
-
-    /// The causes for which the gate is closed, and since when.
-    pub fn decided(&self) -> (Causes, Time) {
-        (
-            Causes(self.decided.load(Ordering::Relaxed)),
-            Time(self.since.load(Ordering::Relaxed)),
-        )
-    }
-}
-
-/// A vital layer as the gate watches it.
-#[derive(Debug)]
-struct Vital {
-    gauge: Arc<BeatGauge>,
-    /// Later than this after its last beat it is late.
-    late: Span,
-}
+use crate::halt::HaltChannel;
+use crate::segment;
+use crate::watchdog::{Thaw, Vital};
 
 /// The motor unit.
 #[derive(Debug)]
@@ -95,22 +29,18 @@ pub struct Motor {
     kind: &'static BodyKind,
     registers: Vec<Register>,
     faults: u64,
-    sensors: Vec<(Reader, Writer, u64)>,
-    commands: Vec<Writer>,
+    link: MotorEnd,
+    sensors: Vec<(Writer, u64)>,
     passed: Vec<Words>,
     reflexes: Vec<Reader>,
-    vital: Vec<Vital>,
+    vital: Vec<Arc<BeatGauge>>,
+    watchdog: Vital,
+    thaw: Thaw,
     gate: Gate,
     channel: Arc<HaltChannel>,
     resets: u64,
     period: Span,
 }
-
-/// Beats that a vital layer may miss before the body halts: one is a hiccup of the host, two are a fault.
-const VITAL_BEATS_MAX: u64 = 2;
-
-/// Least lateness that counts, whatever the period: gaps of 10 to 30 ms are a virtual host's own.
-const VITAL_LATE_MIN: Span = Span::millis(50);
 
 impl Motor {
     /// The motor unit of a checked creature with a body. `sensors` are the wires of the body's outputs.
@@ -148,24 +78,17 @@ impl Motor {
             join(taps, How::Suppress, &name, wires, |end| register.suppress(end));
             registers.push(register);
         }
-        let pairs = link
-            .sensors
-            .into_iter()
-            .zip(sensors)
-            .map(|(reader, writer)| (reader, writer, 0))
-            .collect();
         let vital = creature
             .layers
             .iter()
             .zip(gauges)
             .filter(|(layer, _)| layer.vital);
-        let late = |period: Span| Span((period.0 * (VITAL_BEATS_MAX + 1)).max(VITAL_LATE_MIN.0));
         Motor {
             kind,
             registers,
             faults: 0,
-            sensors: pairs,
-            commands: link.commands,
+            link,
+            sensors: sensors.into_iter().map(|writer| (writer, 0)).collect(),
             passed: vec![[0.0; WORDS_MAX]; inputs.len()],
             reflexes: creature
                 .halt
@@ -173,12 +96,9 @@ impl Motor {
                 .iter()
                 .map(|r| wires.reader(r).expect("checked"))
                 .collect(),
-            vital: vital
-                .map(|(l, gauge)| Vital {
-                    gauge: gauge.clone(),
-                    late: late(l.period),
-                })
-                .collect(),
+            vital: vital.map(|(_, gauge)| gauge.clone()).collect(),
+            watchdog: Vital::new("watchdog", channel.watchdog.clone(), body.period),
+            thaw: Thaw::new(body.period),
             gate: Gate::new(creature.halt.stale, creature.halt.hold),
             channel,
             resets: 0,
@@ -193,6 +113,10 @@ impl Motor {
 
     /// First half of a beat: looks at every command.
     pub fn gather(&mut self, now: Time) {
+        if self.link.taker.take(&mut self.link.readers) {
+            // Another world: what it says counts from the beginning.
+            self.sensors.iter_mut().for_each(|(_, number)| *number = 0);
+        }
         for register in &mut self.registers {
             // Taps of the creature file never leave, so there is none to give back.
             register.gather(now, std::mem::forget);
@@ -208,7 +132,7 @@ impl Motor {
 
     /// Writes a message on the wire of the `index`-th sensor at once, as though the world had sent it.
     pub fn put(&mut self, index: usize, now: Time, words: &Words) {
-        self.sensors[index].1.write(now, words);
+        self.sensors[index].0.write(now, words);
     }
 
     /// The register behind the `index`-th command; `None` for the reset line, which a body has not.
@@ -225,7 +149,7 @@ impl Motor {
     pub fn act(&mut self, now: Time) {
         let seen = self.see(now);
         let (causes, passage) = self.gate.decide(&seen);
-        self.show(causes, now);
+        self.channel.show(causes, now);
         for (index, register) in self.registers.iter().enumerate() {
             let motion = self.kind.motion.contains(&index);
             let words = match register.held() {
@@ -235,9 +159,10 @@ impl Motor {
                 _ => continue,
             };
             self.passed[index] = words;
-            self.commands[index].write(now, &words);
+            self.link.commands[index].write(now, &words);
         }
-        for (reader, writer, number) in &mut self.sensors {
+        let readers = &self.link.readers.sensors;
+        for (reader, (writer, number)) in readers.iter().zip(&mut self.sensors) {
             if let Some(reading) = reader.newer_than(*number) {
                 *number = reading.number;
                 writer.write(now, &reading.words);
@@ -277,14 +202,9 @@ impl Motor {
             .sum();
         let unsound = faults != self.faults;
         self.faults = faults;
-        let began = self.vital.iter().all(|v| v.gauge.counts().beats > 0);
-        let late = self
-            .vital
-            .iter()
-            .any(|v| now.since(v.gauge.counts().last) > v.late);
-        let resets = self.channel.resets.load(Ordering::Relaxed);
-        let reset = resets != self.resets;
-        self.resets = resets;
+        let began = |gauge: &BeatGauge| gauge.counts().beats > 0;
+        let vital_began = self.vital.iter().all(|v| began(v)) && began(&self.watchdog.gauge);
+        let standing = self.standing(now);
         Seen {
             now,
             oldest_command,
@@ -295,19 +215,29 @@ impl Motor {
                 .filter_map(|r| r.read())
                 .map(|r| r.stamp.min(now))
                 .max(),
-            vital_began: began,
-            vital_late: late,
-            latched: Causes(self.channel.standing.load(Ordering::Relaxed)),
-            reset,
+            vital_began,
+            standing,
+            latched: self.channel.latched(),
+            reset: self.channel.reset_asked(&mut self.resets),
         }
     }
 
-    fn show(&self, causes: Causes, now: Time) {
-        if self.channel.decided.load(Ordering::Relaxed) != causes.0
-            || self.channel.since.load(Ordering::Relaxed) == 0
-        {
-            self.channel.decided.store(causes.0, Ordering::Relaxed);
-            self.channel.since.store(now.0.max(1), Ordering::Relaxed);
+    /// Causes that stand now: what the watchdog sees, and what can be seen from here alone.
+    fn standing(&mut self, now: Time) -> Causes {
+        let mut standing = self.channel.watched();
+        let thawed = self.thaw.at(now);
+        if self.watchdog.is_late(now, thawed) {
+            standing = standing.with(Causes::WATCHDOG);
         }
+        // A pulse from the future is no pulse: its writer's clock, or the cell, is wrong.
+        let pulse = self.link.readers.pulse.read().map(|r| r.stamp);
+        let lives = |stamp: Time| stamp <= now + AHEAD_MAX && now.since(stamp) <= self.kind.stale;
+        if !pulse.is_some_and(lives) {
+            standing = standing.with(Causes::BODY);
+        }
+        if segment::cut() > 0 {
+            standing = standing.with(Causes::MEMORY);
+        }
+        standing
     }
 }

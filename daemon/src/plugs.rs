@@ -3,10 +3,11 @@
 //!
 //! Must never wait for a layer process, nor let anything it says reach a real-time thread unchecked.
 
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};
 
 use afsm::layer::{Command, Hand};
-use ipc::clock::Span;
+use ipc::clock::{self, Span, Time};
 use ipc::control::{Plug, PlugTap};
 use ipc::wire::iceoryx::Domain;
 use ipc::wire::{Page, Reader, TapGauge};
@@ -14,7 +15,23 @@ use ipc::wiring::creature::Creature;
 use ipc::wiring::directory::Directory;
 
 use crate::events::Events;
+use crate::flow::Flow;
 use crate::policy::Policy;
+
+/// How long a layer that broke the policy is kept out.
+pub const BARRED: Span = Span::secs(10);
+
+/// Most layers kept out at once: as many as may be attached.
+const BARRED_MAX: usize = 32;
+
+/// An attached layer, as its connection knows it.
+#[derive(Debug)]
+pub struct Joined {
+    /// Its number.
+    pub number: u32,
+    /// Set when it is let go against its will.
+    pub dismissed: Arc<AtomicBool>,
+}
 
 /// A tap that an attached layer holds.
 #[derive(Clone, Debug)]
@@ -38,6 +55,9 @@ pub struct Attached {
     pub page: Arc<Page>,
     /// Its taps.
     pub taps: Vec<AttachedTap>,
+    /// Set when it is let go against its will: its connection is closed then.
+    pub dismissed: Arc<AtomicBool>,
+    flows: Vec<Flow>,
 }
 
 /// The layers attached, and how to reach into those of the creature.
@@ -53,6 +73,8 @@ struct State {
     attached: Vec<Attached>,
     last: u32,
     version: u64,
+    /// Layers that broke the policy, by name, and until when they are not let in again.
+    barred: Vec<(String, Time)>,
 }
 
 impl Plugs {
@@ -86,6 +108,11 @@ impl Plugs {
         self.lock().version
     }
 
+    /// What the page draws has changed by itself: another floor.
+    pub fn picture_changed(&self) {
+        self.lock().version += 1;
+    }
+
     /// Drops what the layers have let go of. Call it now and then.
     pub fn sweep(&self) {
         for hand in &mut self.lock().hands {
@@ -101,7 +128,7 @@ impl Plugs {
     ///
     /// # Errors
     /// Every reason why not.
-    pub fn attach(&self, plug: Plug, domain: &Domain) -> Result<u32, Vec<String>> {
+    pub fn attach(&self, plug: Plug, domain: &Domain) -> Result<Joined, Vec<String>> {
         let result = self.try_attach(&plug, domain);
         let (layer, pid) = (plug.layer.clone(), plug.pid);
         match &result {
@@ -118,7 +145,14 @@ impl Plugs {
         result
     }
 
-    fn try_attach(&self, plug: &Plug, domain: &Domain) -> Result<u32, Vec<String>> {
+    fn try_attach(&self, plug: &Plug, domain: &Domain) -> Result<Joined, Vec<String>> {
+        if self.lock().barred.iter().any(|(name, _)| *name == plug.layer) {
+            let reason = format!(
+                "layer {:?} broke the policy; it may come back {BARRED} after",
+                plug.layer
+            );
+            return Err(vec![reason]);
+        }
         let attached = self.attached();
         let reasons = self
             .policy
@@ -136,6 +170,9 @@ impl Plugs {
             )]);
         }
         let mut state = self.lock();
+        if state.attached.len() >= self.policy.outsiders().layers_max {
+            return Err(vec!["the most layers allowed are attached".into()]);
+        }
         if state.attached.iter().any(|a| a.plug.layer == plug.layer) {
             return Err(vec![format!("a layer {:?} is attached already", plug.layer)]);
         }
@@ -145,14 +182,18 @@ impl Plugs {
         for tap in &plug.taps {
             taps.push(self.join(&mut state, number, plug, tap, &page)?);
         }
+        let dismissed = Arc::new(AtomicBool::new(false));
+        let now = clock::monotonic();
         state.attached.push(Attached {
             number,
             plug: plug.clone(),
             page,
+            flows: taps.iter().map(|t| Flow::new(&t.reader, now)).collect(),
             taps,
+            dismissed: dismissed.clone(),
         });
         state.version += 1;
-        Ok(number)
+        Ok(Joined { number, dismissed })
     }
 
     fn join(
@@ -179,6 +220,44 @@ impl Plugs {
             gauge: joined.gauge,
             reader: joined.reader,
         })
+    }
+
+    /// Looks whether the attached layers keep to the policy: one that floods a tap is let go and not let in again
+    /// for a while; one whose messages are none is named. Call it ten times a second.
+    pub fn police(&self, now: Time) {
+        let mut breaches = Vec::new();
+        let most = self.policy.outsiders().messages_max;
+        {
+            let state = &mut *self.lock();
+            state.barred.retain(|(_, until)| *until > now);
+            for attached in &mut state.attached {
+                for (tap, flow) in attached.taps.iter().zip(&mut attached.flows) {
+                    let layer = &attached.plug.layer;
+                    if let Some(text) = flow.garbage(&tap.gauge, now) {
+                        let text = format!("policy breach: layer {layer}: {text} on {}", tap.tap.from);
+                        breaches.push((None, layer.clone(), text));
+                    }
+                    if let Some(text) = flow.flood(tap.reader.number(), most, now) {
+                        let text = format!("policy breach: layer {layer} floods {}: {text}", tap.tap.from);
+                        attached.dismissed.store(true, Ordering::Relaxed);
+                        breaches.push((Some(attached.number), layer.clone(), text));
+                        break;
+                    }
+                }
+            }
+            let flooding = breaches.iter().filter(|(number, ..)| number.is_some());
+            for (_, layer, _) in flooding {
+                if state.barred.len() < BARRED_MAX {
+                    state.barred.push((layer.clone(), now + BARRED));
+                }
+            }
+        }
+        for (number, layer, text) in breaches {
+            self.events.note("policy", Some(&layer), text);
+            if let Some(number) = number {
+                self.detach(number, "was let go");
+            }
+        }
     }
 
     /// Lets an attached layer go, for the reason given.

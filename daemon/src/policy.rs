@@ -10,12 +10,21 @@ use ipc::clock::Span;
 use ipc::control::{Plug, PlugTap};
 use ipc::message::Kind;
 use ipc::wire::{Page, Reader, Room, TapEnd, TapGauge};
-use ipc::wiring::creature::{Creature, How};
+use ipc::wiring::creature::{Creature, How, Outsiders};
 use ipc::wiring::directory::Directory;
 use ipc::wiring::policy::{self, Claim, ClaimedTap};
 
 /// Where a port of the creature is found: which layer, and which register or outlet of it.
 pub type Place = (usize, usize);
+
+/// Longest name of a port or an owner: two names of 48 characters and what joins them.
+const PORT_NAME_MAX: usize = 160;
+
+/// Most modules of an attached layer: they are only drawn.
+const MODULES_MAX: usize = 512;
+
+/// Most taps of an attached layer: fewer than a layer below takes up between two beats.
+const PLUG_TAPS_MAX: usize = 64;
 
 type Places = HashMap<String, Place>;
 
@@ -66,6 +75,11 @@ impl Policy {
             inputs,
             outputs,
         }
+    }
+
+    /// What the creature file lets outsiders do.
+    pub fn outsiders(&self) -> &Outsiders {
+        &self.creature.outsiders
     }
 
     /// Where the input port `name` of a module of the creature is found.
@@ -140,15 +154,21 @@ impl Policy {
             plug.outputs.len() > ipc::wire::WIRES_MAX,
             "too many outputs".into(),
         );
+        against(!crate::is_name(&plug.layer), "the layer's name is not one".into());
+        against(plug.period == Span::ZERO, "a layer needs a period".into());
+        let longest = plug.outputs.iter().map(|o| o.name.len()).max().unwrap_or(0);
         against(
-            plug.layer.len() > 48 || plug.layer.is_empty(),
-            "the layer's name is not one".into(),
+            longest > PORT_NAME_MAX || plug.owner.len() > PORT_NAME_MAX,
+            "its names are too long".into(),
+        );
+        against(
+            plug.modules.len() > MODULES_MAX || plug.taps.len() > PLUG_TAPS_MAX,
+            "it has too many modules or taps".into(),
         );
         for tap in &plug.taps {
             self.reasons_against_tap(plug, tap, &mut against);
         }
-        let host = self.directory_with(attached);
-        let breaches = policy::breaches(&host, &claim(plug));
+        let breaches = policy::breaches(&self.directory_with(attached), &claim(plug));
         reasons.extend(breaches.iter().map(policy::Breach::to_string));
         reasons
     }
@@ -193,7 +213,7 @@ impl Policy {
     }
 }
 
-/// What a layer asks for, as the policy judges it.
+/// What a layer asks for, as the creature's policy judges it.
 fn claim(plug: &Plug) -> Claim<'_> {
     let own = |name: &str| plug.outputs.iter().any(|o| o.name == name);
     let reads = plug.wires.iter().map(|(from, _)| from.as_str());

@@ -18,12 +18,14 @@ use ipc::wiring::directory::{Directory, output_ports};
 use serde_json::{Value, json};
 
 use crate::alloc;
-use crate::body::{World, WorldEnd};
+use crate::body::remote::{self, Remote};
+use crate::body::{self, World, WorldEnd};
 use crate::events::Events;
 use crate::executor::{Beating, Refusal, host, plan};
+use crate::feeder::{self, Fed};
 use crate::gate::Causes;
-use crate::machine::{Embodied, Machine};
-use crate::motor::HaltChannel;
+use crate::halt::{CauseCount, HaltChannel};
+use crate::machine::{Apart, Embodied, Machine};
 use crate::plugs::Plugs;
 use crate::status::{self, Rates, Record, Watched, WatchedTap};
 use crate::threads::{Crew, Start};
@@ -42,8 +44,8 @@ pub struct Shared {
     pub plugs: Plugs,
     /// Shared memory.
     pub domain: Domain,
-    /// What of the world does not change.
-    pub floor: Value,
+    /// What of the world does not change; known once the body is there.
+    floor: Mutex<Value>,
     status: Mutex<Arc<Value>>,
 }
 
@@ -57,7 +59,24 @@ impl Shared {
             .clone();
         Value::clone(&status)
     }
+
+    /// What of the world does not change.
+    pub fn floor(&self) -> Value {
+        self.floor
+            .lock()
+            .expect("nobody panics holding the floor")
+            .clone()
+    }
+
+    /// Another body was found.
+    pub(crate) fn set_floor(&self, floor: Value) {
+        *self.floor.lock().expect("nobody panics holding the floor") = floor;
+        self.plugs.picture_changed();
+    }
 }
+
+/// Time for every thread to be ready before the first beat is due.
+const START_WAIT: Span = Span::millis(50);
 
 /// A running daemon.
 pub struct Running {
@@ -83,11 +102,19 @@ fn refused(refusals: &[Refusal]) -> std::io::Error {
     std::io::Error::new(std::io::ErrorKind::PermissionDenied, text)
 }
 
-/// Starts `machine`, whose wires are in `owned`, as `name`.
+/// Starts `machine`, whose wires are in `owned`, as `name`. `body` is the name of the process that runs its
+/// body, if one does; `fed` is who is fed while all is well.
 ///
 /// # Errors
 /// When the host refuses a thread.
-pub fn start(name: &str, machine: Machine, owned: OwnedPage, domain: Domain) -> std::io::Result<Running> {
+pub fn start(
+    name: &str,
+    machine: Machine,
+    owned: OwnedPage,
+    domain: Domain,
+    body: Option<&str>,
+    fed: Fed,
+) -> std::io::Result<Running> {
     let began = clock::monotonic();
     let events = Arc::new(Events::new(began));
     let Machine {
@@ -95,12 +122,14 @@ pub fn start(name: &str, machine: Machine, owned: OwnedPage, domain: Domain) -> 
         page,
         stations,
         hands,
-        body,
+        body: embodied,
+        apart,
         taps,
         halt,
+        watchdog,
     } = machine;
     let directory = Directory::of(&creature, name);
-    let floor = body.as_ref().map_or(Value::Null, |b| b.world.floor());
+    let floor = embodied.as_ref().map_or(Value::Null, |b| b.world.floor());
     let plugs = Plugs::new(creature.clone(), directory, hands, events.clone());
     let shared = Arc::new(Shared {
         name: name.into(),
@@ -109,45 +138,63 @@ pub fn start(name: &str, machine: Machine, owned: OwnedPage, domain: Domain) -> 
         events,
         plugs,
         domain,
-        floor,
+        floor: Mutex::new(floor),
         status: Mutex::new(Arc::new(json!({}))),
     });
     let (stop, leave) = (Arc::new(AtomicBool::new(false)), Arc::new(AtomicBool::new(false)));
-    let mut crew = Crew::default();
-    crew.refusals.extend(host::be_ordinary().err());
-    crew.refusals.extend(host::lock_memory().err());
-    host::limit_runaway();
     let planned = plan::threads(&creature).map_err(|faults| {
         let text = faults.join("; ");
         std::io::Error::new(std::io::ErrorKind::InvalidInput, text)
     })?;
-    let threads = planned.len();
-    // Time for every thread to be ready before the first beat is due.
-    let begin = clock::monotonic() + Span::millis(50);
-    let start = Start {
-        begin,
+    let mut crew = Crew::new(Start {
+        begin: clock::monotonic() + START_WAIT,
         halt: halt.clone(),
         stop: stop.clone(),
-    };
+        policy: creature.executor.policy,
+        threads: planned.len(),
+    });
+    crew.refusals.extend(host::be_ordinary().err());
+    crew.refusals.extend(host::lock_memory().err());
+    host::limit_runaway();
+    crew.start_layers(planned, stations)?;
     let mut helpers = Vec::new();
-    crew.start_layers(&start, planned, stations)?;
     let view = Arc::new(Mutex::new(json!({})));
+    let progress = watchdog.progress.clone();
+    if let Some(spec) = &creature.body {
+        crew.start_watchdog(watchdog, spec.period)?;
+    }
     if let Some(Embodied {
         motor,
         world,
         link,
         gauge,
-    }) = body
+    }) = embodied
     {
         let period = motor.period();
-        let plan = plan::motor(period, creature.executor.policy, threads);
-        crew.start_motor(&start, plan, motor, gauge)?;
+        crew.start_motor(motor, gauge)?;
         helpers.push(live(world, link, period, view.clone(), leave.clone())?);
+    }
+    if let (Some(apart), Some(spec), Some(body)) = (apart, &creature.body, body) {
+        let Apart {
+            motor,
+            gauge,
+            giver,
+            first,
+        } = apart;
+        crew.start_motor(motor, gauge)?;
+        let remote = Remote {
+            name: body.into(),
+            declaration: spec.declaration,
+            first,
+            giver,
+        };
+        helpers.push(remote::keep(remote, shared.clone(), view.clone(), leave.clone())?);
     }
     let Crew {
         beating,
         records,
-        refusals,
+        mut refusals,
+        ..
     } = crew;
     if !creature.executor.best_effort && !refusals.is_empty() {
         stop.store(true, Ordering::Relaxed);
@@ -156,6 +203,10 @@ pub fn start(name: &str, machine: Machine, owned: OwnedPage, domain: Domain) -> 
         helpers.into_iter().for_each(|helper| drop(helper.join()));
         return Err(refused(&refusals));
     }
+    if creature.body.is_some() {
+        helpers.push(feeder::feed(fed, progress, shared.clone(), leave.clone())?);
+    }
+    refusals.dedup();
     helpers.push(keeper(owned, shared.clone(), leave.clone())?);
     let net = output_ports(&creature)
         .enumerate()
@@ -196,6 +247,7 @@ pub fn start(name: &str, machine: Machine, owned: OwnedPage, domain: Domain) -> 
         view,
         rates: Rates::default(),
         causes: Causes::NONE,
+        counts: Vec::new(),
     };
     helpers.push(watcher.watch(leave.clone())?);
     Ok(Running {
@@ -215,18 +267,33 @@ impl Running {
         self.beating.iter().map(|b| (b.name.clone(), b.tid)).collect()
     }
 
-    /// Halts the body, waits until it stands, ends every thread.
-    pub fn shut_down(mut self) {
-        self.shared.halt.halt(Causes::SHUTDOWN);
+    /// Halts the body, waits until it stands, and ends the process with a failure: shared memory was cut short
+    /// under it, and what iceoryx2 keeps there may be gone as well. The next start removes what remains.
+    pub fn leave_cut(&self) -> ! {
+        self.shared.halt.halt(Causes::MEMORY);
+        let text = "a shared-memory segment was cut short by another process; halting, then leaving";
+        self.shared.events.note("halt", None, text);
+        self.come_to_a_stand(Causes::MEMORY);
+        std::process::exit(1)
+    }
+
+    /// Waits until the gate has closed for `cause` and the body stands.
+    fn come_to_a_stand(&self, cause: Causes) {
         // Ten beats of the motor unit at its default period; then its end of the link is stale anyway.
         for _ in 0..20 {
-            if self.shared.halt.decided().0.has(Causes::SHUTDOWN) {
+            if self.shared.halt.decided().0.has(cause) {
                 break;
             }
             std::thread::sleep(Duration::from_millis(10));
         }
         // From full speed at the braking of a small robot: 0.3 m/s at 1 m/s².
         std::thread::sleep(Duration::from_millis(300));
+    }
+
+    /// Halts the body, waits until it stands, ends every thread.
+    pub fn shut_down(mut self) {
+        self.shared.halt.halt(Causes::SHUTDOWN);
+        self.come_to_a_stand(Causes::SHUTDOWN);
         self.stop.store(true, Ordering::Relaxed);
         self.beating.drain(..).for_each(Beating::join);
         self.leave.store(true, Ordering::Relaxed);
@@ -254,11 +321,12 @@ fn live(
         let mut due = clock::monotonic();
         while !leave.load(Ordering::Relaxed) {
             let now = clock::monotonic();
-            world.tick(now, &mut link);
+            body::turn(world.as_mut(), &mut link, clock::monotonic);
             *view.lock().expect("nobody panics holding the view") = world.view();
             due = due.max(now - period) + period;
             clock::sleep_until(due);
         }
+        world.halt();
     })
 }
 
@@ -290,6 +358,7 @@ struct Watcher {
     view: Arc<Mutex<Value>>,
     rates: Rates,
     causes: Causes,
+    counts: Vec<CauseCount>,
 }
 
 impl Watcher {
@@ -315,6 +384,7 @@ impl Watcher {
             }
         }
         self.note_halts();
+        self.shared.plugs.police(now);
         let status = self.status(now);
         *self
             .shared
@@ -325,7 +395,26 @@ impl Watcher {
 
     /// Notes when the body halts and goes on; a reflex is everyday life and not noted.
     fn note_halts(&mut self) {
+        let counts = self.shared.halt.counts();
         let causes = self.shared.halt.decided().0.without(Causes::REFLEX);
+        // Causes that began since the last look, some of them perhaps over again.
+        for CauseCount { cause, count, began } in &counts {
+            let before = self
+                .counts
+                .iter()
+                .find(|c| c.cause == *cause)
+                .map_or(0, |c| c.count);
+            let unseen = count - before - u64::from(causes.has(*cause) && !self.causes.has(*cause));
+            if *cause == Causes::REFLEX || before == *count || before == 0 || unseen == 0 {
+                continue;
+            }
+            let at = began.since(self.began).seconds();
+            let name = cause.names().join("");
+            let text =
+                format!("the body was halted for a moment: {name} ({unseen} times, last at {at:.3} s)");
+            self.shared.events.note("halt", None, text);
+        }
+        self.counts = counts;
         if causes == self.causes {
             return;
         }
@@ -335,6 +424,14 @@ impl Watcher {
         };
         self.causes = causes;
         self.shared.events.note("halt", None, text);
+    }
+
+    fn count(&self, counted: &CauseCount, causes: Causes) -> Value {
+        json!({
+            "cause": counted.cause.names().join(""), "count": counted.count,
+            "last_s": counted.began.since(self.began).seconds(), "stands": causes.has(counted.cause),
+            "latches": Causes::LATCHED.has(counted.cause),
+        })
     }
 
     fn status(&mut self, now: Time) -> Value {
@@ -371,6 +468,7 @@ impl Watcher {
                 taps.push(status::tap(&watched, now));
             }
         }
+        self.rates.keep_only(&wires);
         let (causes, since) = self.shared.halt.decided();
         let events = self.shared.events.after(0);
         let newest: Vec<_> = events.iter().rev().take(50).rev().collect();
@@ -381,6 +479,7 @@ impl Watcher {
             "halt": {
                 "halted": causes != Causes::NONE, "causes": causes.names(),
                 "since_s": since.since(self.began).seconds(), "latched": causes.has(Causes::LATCHED),
+                "counts": self.shared.halt.counts().iter().map(|c| self.count(c, causes)).collect::<Vec<_>>(),
             },
             "wires": wires, "taps": taps, "layers": layers, "events": newest,
             "real_time_allocations": alloc::broken(),

@@ -8,7 +8,7 @@ use hdrhistogram::Histogram;
 use ipc::clock::{self, Span, Time};
 use ipc::message::Kind;
 use ipc::tap::Window;
-use ipc::wire::{Reader, TapGauge};
+use ipc::wire::{AHEAD_MAX, Reader, TapGauge};
 use ipc::wiring::creature::{How, Wake};
 use rtrb::Consumer;
 use serde_json::{Value, json};
@@ -182,6 +182,13 @@ pub struct Rates {
 }
 
 impl Rates {
+    /// Forgets wires that are no longer there, so that layers that come under ever new names leave nothing.
+    pub fn keep_only(&mut self, wires: &[Value]) {
+        let names: std::collections::HashSet<&str> =
+            wires.iter().filter_map(|w| w["wire"].as_str()).collect();
+        self.seen.retain(|name, _| names.contains(name.as_str()));
+    }
+
     fn of(&mut self, name: &str, number: u64, now: Time) -> f64 {
         let (before, at, rate) = self.seen.entry(name.into()).or_insert((number, now, 0.0));
         if number < *before {
@@ -238,7 +245,9 @@ pub struct WatchedTap {
 
 /// Shows a tap: whether it holds, and for how long still.
 pub fn tap(t: &WatchedTap, now: Time) -> Value {
-    let window = t.reader.read().map(|r| Window {
+    // What is stamped in the future is no message: see the register.
+    let reading = t.reader.read().filter(|r| r.stamp <= now + AHEAD_MAX);
+    let window = reading.map(|r| Window {
         stamp: r.stamp.min(now),
         time_constant: t.time_constant,
     });

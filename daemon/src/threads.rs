@@ -10,13 +10,17 @@ use std::sync::atomic::AtomicBool;
 
 use afsm::layer::RunningLayer;
 use ipc::clock::{self, Span, Time};
+use ipc::wiring::creature::{PRIORITY_MAX, Policy};
+use rtrb::Consumer;
 
-use crate::executor::gauge::BeatGauge;
+use crate::executor::gauge::{BeatGauge, Sample};
 use crate::executor::plan::{self, Plan};
 use crate::executor::{self, Beating, Beats, Refusal};
+use crate::halt::HaltChannel;
 use crate::machine::Station;
-use crate::motor::{HaltChannel, Motor};
+use crate::motor::Motor;
 use crate::status::Record;
+use crate::watchdog::Watchdog;
 
 /// The layers of one thread, lowest level first.
 struct LayerBeats {
@@ -60,16 +64,17 @@ impl Beats for MotorBeats {
     }
 }
 
-/// What beats, what they record, what the host refused them.
-#[derive(Default)]
-pub struct Crew {
-    /// The threads.
-    pub beating: Vec<Beating>,
-    /// Where each layer, and the motor unit, is measured; layers in the creature's order.
-    pub records: Vec<Record>,
-    /// What the host refused.
-    pub refusals: Vec<Refusal>,
+struct WatchdogBeats(Watchdog);
+
+impl Beats for WatchdogBeats {
+    fn beat(&mut self, now: Time) {
+        self.0.look(now);
+    }
 }
+
+/// Priority of the watchdog: above every layer whatever its file says (at most 97), below the kernel's own
+/// threads at 99.
+const PRIORITY_WATCHDOG: u8 = 98;
 
 /// What every thread is started with.
 pub struct Start {
@@ -79,19 +84,39 @@ pub struct Start {
     pub halt: Arc<HaltChannel>,
     /// Ends them all.
     pub stop: Arc<AtomicBool>,
+    /// The scheduler that the creature asks for.
+    pub policy: Policy,
+    /// How many threads the layers have.
+    pub threads: usize,
+}
+
+/// The real-time threads as they are started.
+pub struct Crew {
+    /// The threads.
+    pub beating: Vec<Beating>,
+    /// Where each layer, the watchdog and the motor unit are measured; layers first, in the creature's order.
+    pub records: Vec<Record>,
+    /// What the host refused.
+    pub refusals: Vec<Refusal>,
+    start: Start,
 }
 
 impl Crew {
+    /// Nobody yet.
+    pub fn new(start: Start) -> Crew {
+        Crew {
+            beating: Vec::new(),
+            records: Vec::new(),
+            refusals: Vec::new(),
+            start,
+        }
+    }
+
     /// Starts the threads of `shared` for `stations`, which are the layers in the creature's order.
     ///
     /// # Errors
     /// When the host refuses a thread.
-    pub fn start_layers(
-        &mut self,
-        start: &Start,
-        shared: Vec<plan::Shared>,
-        stations: Vec<Station>,
-    ) -> io::Result<()> {
+    pub fn start_layers(&mut self, shared: Vec<plan::Shared>, stations: Vec<Station>) -> io::Result<()> {
         let mut stations: Vec<Option<Station>> = stations.into_iter().map(Some).collect();
         let mut records: Vec<(usize, Record)> = Vec::new();
         for plan::Shared { plan, layers } in shared {
@@ -107,15 +132,11 @@ impl Crew {
                 layers: running,
                 took,
             };
-            let mut thread = self.beat(start, plan.clone(), beats, gauges.clone())?;
-            let samples = std::mem::take(&mut thread.samples);
+            let samples = self.beat(plan.clone(), beats, gauges.clone())?;
             for (((index, spec), gauge), samples) in layers.into_iter().zip(&specs).zip(gauges).zip(samples) {
-                records.push((
-                    index,
-                    Record::new(&spec.name, Some(spec.level), &plan, gauge, samples),
-                ));
+                let record = Record::new(&spec.name, Some(spec.level), &plan, gauge, samples);
+                records.push((index, record));
             }
-            self.beating.push(thread);
         }
         records.sort_by_key(|(index, _)| *index);
         self.records.extend(records.into_iter().map(|(_, record)| record));
@@ -126,35 +147,57 @@ impl Crew {
     ///
     /// # Errors
     /// When the host refuses the thread.
-    pub fn start_motor(
+    pub fn start_motor(&mut self, motor: Motor, gauge: Arc<BeatGauge>) -> io::Result<()> {
+        let period = motor.period();
+        self.own("motor", period, PRIORITY_MAX, MotorBeats(motor), gauge)
+    }
+
+    /// Starts the watchdog's thread, which looks every `period`.
+    ///
+    /// # Errors
+    /// When the host refuses the thread.
+    pub fn start_watchdog(&mut self, watchdog: Watchdog, period: Span) -> io::Result<()> {
+        let gauge = self.start.halt.watchdog.clone();
+        self.own(
+            "watchdog",
+            period,
+            PRIORITY_WATCHDOG,
+            WatchdogBeats(watchdog),
+            gauge,
+        )
+    }
+
+    /// Starts a thread that belongs to no layer.
+    fn own(
         &mut self,
-        start: &Start,
-        plan: Plan,
-        motor: Motor,
+        name: &str,
+        period: Span,
+        priority: u8,
+        beats: impl Beats,
         gauge: Arc<BeatGauge>,
     ) -> io::Result<()> {
-        let mut thread = self.beat(start, plan.clone(), MotorBeats(motor), vec![gauge.clone()])?;
-        let samples = thread.samples.pop().expect("a thread has samples of each member");
-        self.records
-            .push(Record::new("motor", None, &plan, gauge, samples));
-        self.beating.push(thread);
+        let plan = plan::own(name, period, priority, self.start.policy, self.start.threads);
+        let mut samples = self.beat(plan.clone(), beats, vec![gauge.clone()])?;
+        let samples = samples.pop().expect("a thread has samples of each member");
+        self.records.push(Record::new(name, None, &plan, gauge, samples));
         Ok(())
     }
 
     fn beat(
         &mut self,
-        start: &Start,
         plan: Plan,
         beats: impl Beats,
         gauges: Vec<Arc<BeatGauge>>,
-    ) -> io::Result<Beating> {
-        let (halt, stop) = (start.halt.clone(), start.stop.clone());
-        let mut thread = executor::start(plan, start.begin, beats, gauges, halt, stop)?;
+    ) -> io::Result<Vec<Consumer<Sample>>> {
+        let (halt, stop) = (self.start.halt.clone(), self.start.stop.clone());
+        let mut thread = executor::start(plan, self.start.begin, beats, gauges, halt, stop)?;
         for refusal in std::mem::take(&mut thread.refusals) {
             if !self.refusals.iter().any(|r| r.grants == refusal.grants) {
                 self.refusals.push(refusal);
             }
         }
-        Ok(thread)
+        let samples = std::mem::take(&mut thread.samples);
+        self.beating.push(thread);
+        Ok(samples)
     }
 }

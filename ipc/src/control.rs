@@ -5,14 +5,14 @@
 //!
 //! Must never carry wire messages: those go through shared memory.
 
-use std::io::{self, BufRead, BufReader, Read, Write};
+use std::io::{self, BufRead, BufReader, Write};
 use std::os::unix::net::UnixStream;
 use std::path::PathBuf;
 use std::time::Duration;
 
 use serde::{Deserialize, Serialize};
 
-use crate::clock::Span;
+use crate::clock::{self, Span, Time};
 use crate::wire::LAYOUT;
 use crate::wire::iceoryx::ICEORYX2;
 use crate::wiring::creature::How;
@@ -23,6 +23,9 @@ pub const PROTOCOL: u32 = 1;
 
 /// Longest line: the directory of a creature of 1,000 modules takes about 400 KiB.
 pub const LINE_MAX: usize = 4 << 20;
+
+/// Longest line that a daemon takes: the manifest of a layer of 500 modules takes about 200 KiB.
+pub const REQUEST_MAX: usize = 256 << 10;
 
 /// What must be equal at both ends.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -186,6 +189,12 @@ pub struct Event {
 pub struct Connection {
     reader: BufReader<UnixStream>,
     writer: UnixStream,
+    line_max: usize,
+    /// How long a line may take from its first byte to its end.
+    line_time: Option<Span>,
+    /// The beginning of a line whose end has not come yet, and when that began.
+    begun: Vec<u8>,
+    begun_at: Time,
 }
 
 impl Connection {
@@ -198,7 +207,26 @@ impl Connection {
         Ok(Connection {
             reader: BufReader::new(stream),
             writer,
+            line_max: LINE_MAX,
+            line_time: None,
+            begun: Vec::new(),
+            begun_at: Time::ZERO,
         })
+    }
+
+    /// The same, but lines longer than `bytes` are refused.
+    #[must_use]
+    pub fn with_lines_up_to(mut self, bytes: usize) -> Connection {
+        self.line_max = bytes;
+        self
+    }
+
+    /// The same, but a line that takes longer than `span` from its first byte to its end is refused, however
+    /// steadily its bytes drip in. With a time-out on the socket it is noticed when nothing comes as well.
+    #[must_use]
+    pub fn with_lines_within(mut self, span: Span) -> Connection {
+        self.line_time = Some(span);
+        self
     }
 
     /// Sends one document.
@@ -214,21 +242,32 @@ impl Connection {
     /// Receives one document; `None` when the other end has closed.
     ///
     /// # Errors
-    /// When the line is too long or is not such a document, or the time-out of the socket is reached.
+    /// When the line is too long or is not such a document. When the time-out of the socket is reached
+    /// ([`timed_out`]) it can be called again: what came so far is kept.
     pub fn receive<T: for<'d> Deserialize<'d>>(&mut self) -> io::Result<Option<T>> {
-        let mut line = Vec::new();
-        let n = (&mut self.reader)
-            .take(LINE_MAX as u64)
-            .read_until(b'\n', &mut line)?;
-        if n == 0 {
-            return Ok(None);
+        loop {
+            if self.is_overdue() {
+                return Err(invalid("a line without an end"));
+            }
+            let come = self.reader.fill_buf()?;
+            if come.is_empty() && self.begun.is_empty() {
+                return Ok(None);
+            }
+            if self.begun.is_empty() {
+                self.begun_at = clock::monotonic();
+            }
+            let end = come.iter().position(|b| *b == b'\n');
+            let taken = end.map_or(come.len(), |end| end + 1);
+            if come.is_empty() || self.begun.len() + taken > self.line_max {
+                return Err(invalid("half a line, or one too long"));
+            }
+            self.begun.extend_from_slice(&come[..taken]);
+            self.reader.consume(taken);
+            if end.is_some() {
+                break;
+            }
         }
-        if line.last() != Some(&b'\n') {
-            return Err(io::Error::new(
-                io::ErrorKind::InvalidData,
-                "half a line, or one too long",
-            ));
-        }
+        let line = std::mem::take(&mut self.begun);
         serde_json::from_slice(&line)
             .map(Some)
             .map_err(|e| io::Error::new(io::ErrorKind::InvalidData, e))
@@ -244,10 +283,27 @@ impl Connection {
             .ok_or_else(|| io::Error::new(io::ErrorKind::UnexpectedEof, "the daemon closed the connection"))
     }
 
+    fn is_overdue(&self) -> bool {
+        let limit = self.line_time.filter(|_| !self.begun.is_empty());
+        limit.is_some_and(|limit| clock::monotonic().since(self.begun_at) > limit)
+    }
+
     /// The socket itself.
     pub fn socket(&self) -> &UnixStream {
         &self.writer
     }
+}
+
+fn invalid(what: &str) -> io::Error {
+    io::Error::new(io::ErrorKind::InvalidData, what)
+}
+
+/// Whether a receive only ran into the time-out of its socket.
+pub fn timed_out(error: &io::Error) -> bool {
+    matches!(
+        error.kind(),
+        io::ErrorKind::WouldBlock | io::ErrorKind::TimedOut | io::ErrorKind::Interrupted
+    )
 }
 
 /// Why a daemon could not be called.
@@ -355,7 +411,43 @@ pub fn run_dir() -> PathBuf {
 
 /// The control socket of the daemon that runs `creature`.
 pub fn socket_path(creature: &str) -> PathBuf {
-    run_dir().join(format!("{}{creature}.sock", domain_prefix()))
+    socket_in_run_dir(creature, "sock")
+}
+
+/// A socket of this shared-memory domain, `name.suffix`.
+pub(crate) fn socket_in_run_dir(name: &str, suffix: &str) -> PathBuf {
+    run_dir().join(format!("{}{name}.{suffix}", domain_prefix()))
+}
+
+/// Who is at the other end of a Unix socket, as the kernel knows it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Peer {
+    /// Its process.
+    pub pid: i32,
+    /// Its user.
+    pub user: u32,
+    /// Its group.
+    pub group: u32,
+}
+
+impl Peer {
+    /// Who connected to, or listens at, the other end of `stream` (`SO_PEERCRED`).
+    ///
+    /// # Errors
+    /// When the kernel does not say.
+    pub fn of(stream: &UnixStream) -> io::Result<Peer> {
+        let credentials = rustix::net::sockopt::socket_peercred(stream)?;
+        Ok(Peer {
+            pid: credentials.pid.as_raw_nonzero().get(),
+            user: credentials.uid.as_raw(),
+            group: credentials.gid.as_raw(),
+        })
+    }
+
+    /// Whether it is this process's user, or root, who may do everything to this process anyway.
+    pub fn is_us(self) -> bool {
+        self.user == rustix::process::geteuid().as_raw() || self.user == 0
+    }
 }
 
 fn domain_prefix() -> String {

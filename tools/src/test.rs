@@ -6,6 +6,9 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Instant;
 
+use afsm::Kinds;
+use ipc::wiring::Rejected;
+use scenario::plan::Scenario;
 use scenario::run::How;
 use scenario::{kinds, report, suite};
 use serde_json::json;
@@ -19,30 +22,35 @@ pub(crate) struct Wanted<'w> {
     pub(crate) json: bool,
 }
 
+/// The scenarios in `paths`, or the status to leave with when their errors are told.
+pub(crate) fn read(paths: &[PathBuf], kinds: &Kinds, as_json: bool) -> Result<Vec<Scenario>, ExitCode> {
+    let files = suite::find(paths).map_err(|wrong| {
+        wrong.iter().for_each(|w| eprintln!("{w}"));
+        if as_json {
+            println!("{}", json!({ "errors": wrong }));
+        }
+        ExitCode::from(2)
+    })?;
+    suite::read_all(&files, kinds).map_err(|rejected| refuse(&rejected, as_json))
+}
+
+/// Tells every error of bad files.
+pub(crate) fn refuse(rejected: &[Rejected], as_json: bool) -> ExitCode {
+    for one in rejected {
+        eprintln!("{one}\n");
+    }
+    if as_json {
+        let errors: Vec<_> = rejected.iter().flat_map(Rejected::located).collect();
+        println!("{}", json!({ "errors": errors }));
+    }
+    ExitCode::from(2)
+}
+
 pub(crate) fn test(wanted: &Wanted<'_>) -> ExitCode {
     let kinds = kinds::kinds();
-    let files = match suite::find(wanted.paths) {
-        Ok(files) => files,
-        Err(wrong) => {
-            wrong.iter().for_each(|w| eprintln!("{w}"));
-            if wanted.json {
-                println!("{}", json!({ "errors": wrong }));
-            }
-            return ExitCode::from(2);
-        }
-    };
-    let mut scenarios = match suite::read_all(&files, &kinds) {
+    let mut scenarios = match read(wanted.paths, &kinds, wanted.json) {
         Ok(scenarios) => scenarios,
-        Err(rejected) => {
-            for one in &rejected {
-                eprintln!("{one}");
-            }
-            if wanted.json {
-                let errors: Vec<_> = rejected.iter().flat_map(|r| r.located()).collect();
-                println!("{}", json!({ "errors": errors }));
-            }
-            return ExitCode::from(2);
-        }
+        Err(code) => return code,
     };
     if let Some(filter) = wanted.filter {
         scenarios.retain(|s| s.title.contains(filter) || s.path.display().to_string().contains(filter));

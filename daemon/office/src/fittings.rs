@@ -23,6 +23,8 @@ const CLEAR_M: f64 = 0.3;
 const STRAY_M: f64 = 0.8;
 /// Room left around a chair where it is put, m.
 const ROOM_M: f64 = 0.05;
+/// How often doors are looked at, s: in it a person walks a quarter of an arm's reach.
+const LOOK_S: f64 = 0.2;
 /// How soon one looks again when something was in the way, s.
 const AGAIN_S: f64 = 2.0;
 
@@ -42,7 +44,8 @@ pub(crate) struct Fittings {
     leaves: Vec<Leaf>,
     chairs: Vec<Chair>,
     noise: Noise,
-    /// When the next of them is due, s.
+    /// When doors and chairs are looked at next, s.
+    doors_s: f64,
     next_s: f64,
 }
 
@@ -54,6 +57,7 @@ impl Fittings {
             leaves: Vec::new(),
             chairs: Vec::new(),
             noise,
+            doors_s: 0.0,
             next_s: 0.0,
         };
         for (block, it) in layout.blocks.iter().enumerate() {
@@ -92,6 +96,10 @@ impl Fittings {
         discs: &[Disc],
         people_from: usize,
     ) {
+        if time_s < self.doors_s {
+            return;
+        }
+        self.doors_s = time_s + LOOK_S;
         for i in 0..self.leaves.len() {
             let Leaf { block, due_s } = self.leaves[i];
             let leaf = &layout.blocks[block];

@@ -245,6 +245,10 @@ impl Air<'_> {
         let mut found = None;
         for &corner in self.space.corners() {
             let to = corner - from;
+            // The square spares most corners the root.
+            if to.dot(to) >= nearest * nearest {
+                continue;
+            }
             let distance = to.length();
             if distance >= nearest || to.dot(axis) < distance * cos_half_cone || distance < HAIR_M {
                 continue;

@@ -2,7 +2,8 @@
 //!
 //! ```text
 //!  in:  ping (fires the ring), turn rad/s, forward m/s
-//!  out: sonar m, compass rad, odometry, fan m (the range camera's picture, on its own beat)
+//!  out: sonar m, compass rad, odometry, fan m (the range camera's picture, on its own beat),
+//!       battery (share left; it charges where the robot started)
 //! ```
 
 use std::sync::{Arc, Mutex, MutexGuard};
@@ -26,6 +27,7 @@ const SONAR: usize = 0;
 const COMPASS: usize = 1;
 const ODOMETRY: usize = 2;
 const FAN: usize = 3;
+const BATTERY: usize = 4;
 
 /// The kind `office`.
 pub static KIND: BodyKind = BodyKind {
@@ -62,6 +64,13 @@ static DECLARATION: Declaration = Declaration {
         )
         .unit("m")
         .between(0.0, 100.0),
+        Port::new(
+            "battery",
+            Kind::Number,
+            "share of the charge that is left, once a second",
+        )
+        .unit("1")
+        .between(0.0, 1.0),
     ],
     parameters: &[
         count("people", 6.0, 40.0, "people who walk about"),
@@ -147,6 +156,13 @@ static DECLARATION: Declaration = Declaration {
             unit: "",
             about: "time between two pictures of the range camera",
         },
+        number(
+            "charge",
+            0.0,
+            1000.0,
+            "h",
+            "how long a full charge lasts; 0 for ever",
+        ),
     ],
 };
 
@@ -184,11 +200,72 @@ struct Shared {
 pub struct OfficeWorld {
     shared: Arc<Mutex<Shared>>,
     robot: usize,
-    pinged: u64,
     sonar: [f64; SONARS],
     range_max: f64,
     picture: Span,
     picture_due: Time,
+    battery: Battery,
+}
+
+/// A battery, and the place where it charges.
+#[derive(Clone, Copy, Debug)]
+pub struct Battery {
+    /// Share of the charge that is left.
+    pub left: f64,
+    /// Times that it ran out.
+    pub flat: u64,
+    /// Times that charging began.
+    pub charges: u64,
+    hours: f64,
+    home: (f64, f64),
+    charging: bool,
+    last: Option<Time>,
+    told: Option<Time>,
+}
+
+/// As near to where it started the robot charges, m.
+const DOCK_M: f64 = 0.8;
+/// So much faster than it empties the battery charges.
+const CHARGING: f64 = 10.0;
+/// Below this share charging is worth counting.
+const CHARGE_BELOW: f64 = 0.6;
+
+impl Battery {
+    fn new(hours: f64, home: (f64, f64)) -> Battery {
+        Battery {
+            left: 1.0,
+            flat: 0,
+            charges: 0,
+            hours,
+            home,
+            charging: false,
+            last: None,
+            told: None,
+        }
+    }
+
+    /// Lets time pass up to `now` with the robot at `at`; says whether it has any charge.
+    fn pass(&mut self, now: Time, at: (f64, f64)) -> bool {
+        let gone = self
+            .last
+            .replace(now)
+            .map_or(0.0, |last| now.since(last).seconds());
+        if self.hours <= 0.0 {
+            return true;
+        }
+        let docked = (at.0 - self.home.0).hypot(at.1 - self.home.1) < DOCK_M;
+        if docked && !self.charging && self.left < CHARGE_BELOW {
+            self.charges += 1;
+            self.charging = true;
+        }
+        self.charging &= docked;
+        let share = gone / (self.hours * 3600.0);
+        let had = self.left > 0.0;
+        self.left += if docked { share * CHARGING } else { -share };
+        self.left = self.left.clamp(0.0, 1.0);
+        self.flat += u64::from(had && self.left == 0.0);
+        self.left > 0.0
+    }
 }
 
 /// The parameters of a body, by name.
@@ -277,19 +354,26 @@ impl OfficeWorld {
             drives: [Drive::default(); ROBOTS_MAX],
             last: None,
         };
-        OfficeWorld::of(
-            Arc::new(Mutex::new(shared)),
-            0,
-            config.sonar.range_max_m,
-            *picture,
-        )
+        let (shared, hours) = (Arc::new(Mutex::new(shared)), given.number("charge"));
+        OfficeWorld::of(shared, 0, config.sonar.range_max_m, *picture, hours)
     }
 
-    fn of(shared: Arc<Mutex<Shared>>, robot: usize, range_max: f64, picture: Span) -> OfficeWorld {
+    fn of(
+        shared: Arc<Mutex<Shared>>,
+        robot: usize,
+        range_max: f64,
+        picture: Span,
+        hours: f64,
+    ) -> OfficeWorld {
+        let home = {
+            let shared = shared.lock().expect("nobody panics holding an office");
+            shared.office.true_pose_of(robot)
+        };
+        let battery = Battery::new(hours, (home.x, home.y));
         OfficeWorld {
+            battery,
             shared,
             robot,
-            pinged: 0,
             sonar: [range_max; SONARS],
             range_max,
             picture,
@@ -303,7 +387,13 @@ impl OfficeWorld {
     /// When there is no such robot.
     pub fn fellow(&self, robot: usize) -> OfficeWorld {
         assert!(robot < self.office().robots(), "there is no robot {robot}");
-        OfficeWorld::of(self.shared.clone(), robot, self.range_max, self.picture)
+        let (range_max, picture, hours) = (self.range_max, self.picture, self.battery.hours);
+        OfficeWorld::of(self.shared.clone(), robot, range_max, picture, hours)
+    }
+
+    /// The battery as it stands.
+    pub fn battery(&self) -> Battery {
+        self.battery
     }
 
     /// The office, for observers and tests.
@@ -350,31 +440,44 @@ impl Shared {
 
 impl World for OfficeWorld {
     fn tick(&mut self, now: Time, link: &mut WorldEnd) {
-        let drive = drive(now, link);
+        let wanted = Drive {
+            forward: link.motion(FORWARD)[0],
+            turn: link.motion(TURN)[0],
+        };
         let mut shared = self.shared.lock().expect("nobody panics holding an office");
+        let at = shared.office.true_pose_of(self.robot);
+        let drive = if self.battery.pass(now, (at.x, at.y)) {
+            wanted
+        } else {
+            Drive::default()
+        };
         shared.advance(now, self.robot, drive);
         let office = &mut shared.office;
-        if let Some(ping) = link.commands[PING].newer_than(self.pinged) {
-            self.pinged = ping.number;
+        if self
+            .battery
+            .told
+            .is_none_or(|told| now.since(told) >= Span::secs(1))
+        {
+            self.battery.told = Some(now);
+            link.tell(BATTERY, now, &self.battery.left.pack());
+        }
+        if link.order(PING).is_some() {
             self.sonar = office.sonar_of(self.robot);
-            link.sensors[SONAR].write(now, &Map { ranges: self.sonar }.pack());
+            link.tell(SONAR, now, &Map { ranges: self.sonar }.pack());
         }
         if now >= self.picture_due {
             self.picture_due = now + self.picture;
             let ranges = office.fan_of(self.robot);
-            link.sensors[FAN].write(now, &Map { ranges }.pack());
+            link.tell(FAN, now, &Map { ranges }.pack());
         }
         let pose = office.odometry_of(self.robot);
-        link.sensors[COMPASS].write(now, &pose.heading.pack());
-        link.sensors[ODOMETRY].write(
-            now,
-            &Pose {
-                x: pose.x,
-                y: pose.y,
-                heading: pose.heading,
-            }
-            .pack(),
-        );
+        link.tell(COMPASS, now, &pose.heading.pack());
+        let odometry = Pose {
+            x: pose.x,
+            y: pose.y,
+            heading: pose.heading,
+        };
+        link.tell(ODOMETRY, now, &odometry.pack());
     }
 
     fn view(&self) -> Value {
@@ -398,24 +501,5 @@ impl World for OfficeWorld {
             "walls": [], "boxes": boxes, "bounds": [0.0, 0.0, plan.width, plan.height],
             "robot_radius_m": ROBOT_RADIUS_M,
         })
-    }
-
-    fn as_any(&mut self) -> &mut dyn std::any::Any {
-        self
-    }
-}
-
-/// What the wheels are told. The body's own halt: commands that went stale are no commands.
-fn drive(now: Time, link: &WorldEnd) -> Drive {
-    let fresh = |i: usize| {
-        let reading = link.commands[i].read()?;
-        (now.since(reading.stamp) <= KIND.stale).then_some(reading.words[0])
-    };
-    match (fresh(FORWARD), fresh(TURN)) {
-        (Some(forward), Some(turn)) => Drive { forward, turn },
-        _ => Drive {
-            forward: 0.0,
-            turn: 0.0,
-        },
     }
 }

@@ -48,8 +48,13 @@ pub struct BeatCounts {
 }
 
 impl BeatGauge {
+    /// Counts a beat that ended in time, at `now`.
+    pub fn beat(&self, now: Time) {
+        self.judged(now, Verdict::default(), true);
+    }
+
     /// Counts a beat that ended at `now` with `verdict`; `sound` says whether the identity holds after it.
-    pub fn beat(&self, now: Time, verdict: Verdict, sound: bool) {
+    pub fn judged(&self, now: Time, verdict: Verdict, sound: bool) {
         add(&self.beats, 1);
         add(&self.skipped, verdict.skip);
         add(&self.overruns, u64::from(verdict.overrun));

@@ -21,7 +21,7 @@ use rtrb::{Consumer, Producer, RingBuffer};
 
 use crate::alloc;
 use crate::gate::Causes;
-use crate::motor::HaltChannel;
+use crate::halt::HaltChannel;
 use deadline::Pace;
 use gauge::{BeatGauge, SAMPLES_MAX, Sample};
 pub use host::Refusal;
@@ -123,7 +123,9 @@ pub fn start(
             let _ = ready_in.send((tid, host::settle(&plan)));
             drop(ready_in);
             touch_stack();
-            alloc::seal();
+            if plan.sealed {
+                alloc::seal();
+            }
             run(&plan, begin, &mut beats, &mut faces, &halt, &stop, &mut Host);
             alloc::unseal();
         })?;
@@ -178,7 +180,7 @@ fn run(
             halt.halt(Causes::OVERRUN);
         }
         for (member, face) in faces.iter_mut().enumerate() {
-            face.gauge.beat(ended, verdict, sound);
+            face.gauge.judged(ended, verdict, sound);
             let sample = Sample {
                 due,
                 latency: woke.since(due),

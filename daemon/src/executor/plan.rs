@@ -7,11 +7,14 @@
 //! hard-real-time environment", J. ACM 20(1), 1973): the shorter the period, the higher the priority.
 
 use ipc::clock::Span;
-use ipc::wiring::creature::{Creature, Executor, Layer, Overrun, PRIORITY_MAX, Policy, Wake, rate_monotonic};
+use ipc::wiring::creature::{Creature, Executor, Layer, Overrun, Policy, Wake, rate_monotonic};
 
 /// Share of a period that a SCHED_DEADLINE thread reserves, all threads of one period together. The host
 /// grants 95 % of each processor in all; what is left runs the world and those who watch.
 const RESERVED_MAX: f64 = 0.6;
+
+/// Threads that belong to no layer: the motor unit and the watchdog.
+const OWN: usize = 2;
 
 /// Least reservation that the kernel takes (sched(7)): 1024 ns.
 const RUNTIME_MIN: Span = Span::nanos(1024);
@@ -59,6 +62,8 @@ pub struct Plan {
     pub wake: Wake,
     /// What happens when a beat misses its deadline.
     pub overrun: Overrun,
+    /// Whether it is expected to allocate nothing once it beats.
+    pub sealed: bool,
 }
 
 /// A thread and the layers on it, by their index in the creature; lowest level first.
@@ -88,19 +93,20 @@ pub fn threads(creature: &Creature) -> Result<Vec<Shared>, Vec<String>> {
     Ok(groups.iter().cloned().map(shared).collect())
 }
 
-/// The motor unit's own thread.
-pub fn motor(period: Span, policy: Policy, threads: usize) -> Plan {
+/// The plan of a thread that belongs to no layer; `threads` are those of the layers.
+pub fn own(name: &str, period: Span, priority: u8, policy: Policy, threads: usize) -> Plan {
     Plan {
-        name: "motor".into(),
+        name: name.into(),
         period,
         phase: Span::ZERO,
         schedule: match policy {
-            Policy::Fifo => Schedule::Fifo(PRIORITY_MAX),
-            Policy::Deadline => reserve(period, threads + 1),
+            Policy::Fifo => Schedule::Fifo(priority),
+            Policy::Deadline => reserve(period, threads + OWN),
         },
         cpu: None,
         wake: Wake::Sleep,
         overrun: Overrun::Skip,
+        sealed: true,
     }
 }
 
@@ -184,7 +190,10 @@ fn plan(creature: &Creature, groups: &[Vec<usize>], layers: &[usize]) -> Plan {
             periods.dedup();
             Schedule::Fifo(first.priority.unwrap_or(rate_monotonic(&periods, first.period)))
         }
-        Policy::Deadline => reserve(first.period, groups.len() + usize::from(creature.body.is_some())),
+        Policy::Deadline => reserve(
+            first.period,
+            groups.len() + OWN * usize::from(creature.body.is_some()),
+        ),
     };
     Plan {
         name: match (&first.group, layers.len()) {
@@ -197,6 +206,7 @@ fn plan(creature: &Creature, groups: &[Vec<usize>], layers: &[usize]) -> Plan {
         cpu: first.cpu,
         wake: first.wake,
         overrun: first.overrun,
+        sealed: true,
     }
 }
 

@@ -81,12 +81,12 @@ fn deadline_reserves_a_part_of_the_period_for_each() {
     c.executor.policy = Policy::Deadline;
     let threads = threads(&c).unwrap();
     let expected = Schedule::Deadline {
-        runtime: Span::millis(2),
+        runtime: Span::micros(1500),
         period: Span::millis(10),
     };
     assert_eq!(
         threads[0].plan.schedule, expected,
-        "two layers and the motor unit share 60 %"
+        "two layers, the motor unit and the watchdog share 60 %"
     );
 }
 

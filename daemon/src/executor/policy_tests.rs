@@ -61,6 +61,7 @@ fn scenario(overrun: Overrun, late_us: &[u64], long_us: &[u64]) -> Outcome {
         cpu: None,
         wake: Wake::Sleep,
         overrun,
+        sealed: true,
     };
     let stop = AtomicBool::new(false);
     let halt = HaltChannel::default();
@@ -84,7 +85,7 @@ fn scenario(overrun: Overrun, late_us: &[u64], long_us: &[u64]) -> Outcome {
         &stop,
         &mut script,
     );
-    let standing = halt.standing();
+    let standing = halt.latched();
     Outcome {
         at_us: diary.0,
         counts: gauge.counts(),

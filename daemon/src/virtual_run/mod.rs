@@ -14,24 +14,25 @@
 
 mod guests;
 mod log;
+mod views;
+mod writing;
 
 use afsm::Kinds;
 use afsm::random::Random;
 use ipc::clock::{Span, Time};
 use ipc::message::Words;
-use ipc::tap::Window;
-use ipc::wire::{Page, Register, TapCounts};
-use ipc::wiring::creature::{Creature, How};
+use ipc::wire::Page;
+use ipc::wiring::creature::Creature;
 use ipc::wiring::directory::output_ports;
 use std::sync::Arc;
 
 use crate::body::{Nowhere, Place};
-use crate::executor::deadline::Verdict;
 use crate::gate::Causes;
 use crate::machine::{Machine, Station};
 
 pub use guests::{Guest, Manifest};
 pub use log::{Log, Message};
+pub use views::TapView;
 
 use guests::{Guests, beat_from};
 
@@ -84,15 +85,6 @@ struct WatchedInput {
     name: String,
     delivered: u64,
     messages: Vec<Message>,
-}
-
-/// A tap as it stands.
-#[derive(Clone, Copy, Debug)]
-pub struct TapView {
-    /// Its newest message's window.
-    pub window: Option<Window>,
-    /// What was counted at it, over all comings of its layer.
-    pub counts: TapCounts,
 }
 
 /// A creature on the virtual clock.
@@ -259,8 +251,8 @@ impl VirtualRun {
                 }
                 Stimulus::Halt => self.machine.halt.halt(Causes::EMERGENCY),
                 Stimulus::Reset => {
-                    let done = self.machine.halt.reset();
-                    assert!(done.is_ok(), "a run on the virtual clock never shuts down");
+                    // Refused while its cause stands; then nothing happens, and the halt says why.
+                    let _ = self.machine.halt.reset();
                 }
             }
             if joining(stimulus) {
@@ -317,67 +309,6 @@ impl VirtualRun {
         self.order = order.into_iter().map(|(_, which)| which).collect();
     }
 
-    /// Lets the registers and taps look of every layer of which `chosen` says so, told when it is due, and of
-    /// every one with a watched input.
-    fn look(&mut self, chosen: impl Fn(Option<Time>) -> bool) {
-        let now = self.now;
-        let all = !self.inputs.is_empty();
-        for (station, due) in self.machine.stations.iter_mut().zip(&self.due) {
-            if all || chosen(*due) {
-                station.running.look(now);
-            }
-        }
-        for guest in &mut self.guests.here {
-            if all || chosen(guest.due) {
-                guest.station.running.look(now);
-            }
-        }
-        if let Some(body) = &mut self.machine.body
-            && (all || chosen(Some(self.body_due)))
-        {
-            body.motor.look(now);
-        }
-        for index in 0..self.inputs.len() {
-            self.note_delivery(index);
-        }
-    }
-
-    fn note_delivery(&mut self, index: usize) {
-        let Some(register) = self.register(&self.inputs[index].name) else {
-            return;
-        };
-        let (delivered, held) = (register.counts().delivered, register.held().copied());
-        let input = &mut self.inputs[index];
-        if delivered != input.delivered {
-            input.delivered = delivered;
-            input.messages.extend(held);
-        }
-    }
-
-    /// The register behind the input port called `name`.
-    pub fn register(&self, name: &str) -> Option<&Register> {
-        if let Some((station, input)) = self.guests.policy.input(name) {
-            return Some(self.machine.stations[station].running.register(input));
-        }
-        let (module, port) = name.split_once('.')?;
-        if module == ipc::wiring::BODY {
-            let body = self.machine.body.as_ref()?;
-            let (index, _) = body.motor.declaration().input(port)?;
-            return body.motor.register(index);
-        }
-        self.guests.here.iter().find_map(|guest| {
-            let mut before = 0;
-            for m in &guest.station.spec.modules {
-                if m.name == module {
-                    let (index, _) = m.declaration.input(port)?;
-                    return Some(guest.station.running.register(before + index));
-                }
-                before += m.declaration.inputs.len() + 1;
-            }
-            None
-        })
-    }
-
     /// Every layer due looks at its registers and steps, then the motor unit looks at its own.
     fn step(&mut self) {
         let t = self.now;
@@ -396,194 +327,6 @@ impl VirtualRun {
         if let Some(body) = self.machine.body.as_mut().filter(|_| self.body_due == t) {
             body.motor.gather(t);
         }
-    }
-
-    /// Messages of this moment are written, those put and those emitted, the highest level first.
-    fn commit(&mut self, stimuli: &[Stimulus]) {
-        let t = self.now;
-        let mut puts = Vec::new();
-        for stimulus in stimuli {
-            if let Stimulus::Put(name, words) = stimulus
-                && let Some((which, output)) = self.output(name)
-            {
-                puts.push((which, output, words));
-            }
-        }
-        for place in 0..self.order.len() {
-            let which = self.order[place];
-            let mut written = Vec::new();
-            for (_, output, words) in puts.iter().filter(|(w, ..)| *w == Some(which)) {
-                if written.contains(output) {
-                    // The second message of this moment on one wire: the first is taken in before.
-                    self.look(|_| true);
-                }
-                self.station(which).running.put(*output, t, words);
-                self.scan(which, *output);
-                written.push(*output);
-            }
-            if self.due_of(which) != Some(t) {
-                continue;
-            }
-            if written
-                .iter()
-                .any(|o| self.station(which).running.outlet(*o).is_staged())
-            {
-                self.look(|_| true);
-            }
-            self.beat(which);
-        }
-        let sensors = puts.iter().filter(|(which, ..)| which.is_none());
-        let mut written = Vec::new();
-        for (_, index, words) in sensors {
-            if written.contains(index) {
-                self.look(|_| true);
-            }
-            if let Some(body) = &mut self.machine.body {
-                body.motor.put(*index, t, words);
-                written.push(*index);
-            }
-            if let Some(log) = &mut self.log {
-                log.scan(*index);
-            }
-        }
-        self.act(&written);
-        for hand in &mut self.machine.hands {
-            while hand.returned.pop().is_ok() {}
-        }
-    }
-
-    /// The layer `which` writes what it staged, and is due again.
-    fn beat(&mut self, which: Which) {
-        let t = self.now;
-        let station = self.station(which);
-        station.running.commit(t);
-        station.gauge.beat(t, Verdict::default(), true);
-        let next = Some(t + station.spec.period);
-        match which {
-            Which::Own(index) => self.due[index] = next,
-            Which::Guest(index) => self.guests.here[index].due = next,
-        }
-        if self.log.is_some() {
-            let station = self.station(which);
-            for output in 0..station.running.outputs() {
-                self.scan(which, output);
-            }
-        }
-    }
-
-    /// The motor unit acts and the world ticks, if they are due. Sensors of which a message was put at this
-    /// moment are taken in before.
-    fn act(&mut self, put: &[usize]) {
-        let t = self.now;
-        if self.machine.body.is_none() || self.body_due != t {
-            return;
-        }
-        if !put.is_empty() {
-            self.look(|_| true);
-        }
-        let Some(body) = &mut self.machine.body else {
-            return;
-        };
-        body.motor.act(t);
-        body.gauge.beat(t, Verdict::default(), true);
-        body.world.tick(t, &mut body.link);
-        self.body_due = t + body.motor.period();
-        if let Some(log) = &mut self.log {
-            (0..body.motor.declaration().outputs.len()).for_each(|index| log.scan(index));
-        }
-    }
-
-    fn station(&mut self, which: Which) -> &mut Station {
-        match which {
-            Which::Own(index) => &mut self.machine.stations[index],
-            Which::Guest(index) => &mut self.guests.here[index].station,
-        }
-    }
-
-    fn due_of(&self, which: Which) -> Option<Time> {
-        match which {
-            Which::Own(index) => self.due[index],
-            Which::Guest(index) => self.guests.here[index].due,
-        }
-    }
-
-    /// Takes a wire's newest message into the log.
-    fn scan(&mut self, which: Which, output: usize) {
-        let Some(log) = &mut self.log else { return };
-        log.scan(match which {
-            Which::Own(index) => self.first[index] + output,
-            Which::Guest(index) => self.guests.here[index].logged[output],
-        });
-    }
-
-    /// Where the output port called `name` is found, if its layer is here: `None` stands for the body.
-    fn output(&self, name: &str) -> Option<(Option<Which>, usize)> {
-        if let Some((station, output)) = self.guests.policy.output(name) {
-            return Some((Some(Which::Own(station)), output));
-        }
-        let (module, port) = name.split_once('.')?;
-        if module == ipc::wiring::BODY {
-            let body = self.machine.body.as_ref()?;
-            return Some((None, body.motor.declaration().output(port)?.0));
-        }
-        self.guests.here.iter().enumerate().find_map(|(index, guest)| {
-            let output = guest.plug.outputs.iter().position(|o| o.name == name)?;
-            Some((Some(Which::Guest(index)), output))
-        })
-    }
-
-    /// What was written so far.
-    pub fn log(&self) -> Option<&Log> {
-        self.log.as_ref()
-    }
-
-    /// What was delivered so far to the watched input called `name`.
-    pub fn delivered(&self, name: &str) -> &[Message] {
-        let input = self.inputs.iter().find(|i| i.name == name);
-        input.map(|i| i.messages.as_slice()).unwrap_or_default()
-    }
-
-    /// The state of the module called `name`, if its layer is here.
-    pub fn state_of(&self, name: &str) -> Option<&'static str> {
-        let guests = self.guests.here.iter().map(|g| &g.station);
-        let mut stations = self.machine.stations.iter().chain(guests);
-        stations.find_map(|s| s.running.state_of(name))
-    }
-
-    /// The tap from one port to another, if there ever was one.
-    pub fn tap(&self, from: &str, to: &str) -> Option<TapView> {
-        let taps = self.guests.taps.iter().filter(|t| t.from == from && t.to == to);
-        let mut view = None;
-        for tap in taps {
-            let window = match tap.place {
-                Ok((station, port)) => {
-                    let running = &self.machine.stations[station].running;
-                    match tap.how {
-                        How::Suppress => running.register(port).window_of(&tap.gauge),
-                        How::Inhibit => running.outlet(port).window_of(&tap.gauge),
-                    }
-                }
-                Err(input) => {
-                    let body = self.machine.body.as_ref();
-                    let register = body.and_then(|b| b.motor.register(input));
-                    register.and_then(|r| r.window_of(&tap.gauge))
-                }
-            };
-            let counts = tap.gauge.counts();
-            let before: TapView = view.unwrap_or(TapView {
-                window: None,
-                counts: TapCounts::default(),
-            });
-            view = Some(TapView {
-                window: window.or(before.window),
-                counts: TapCounts {
-                    delivered: before.counts.delivered + counts.delivered,
-                    rejected: before.counts.rejected + counts.rejected,
-                    faults: before.counts.faults + counts.faults,
-                },
-            });
-        }
-        view
     }
 }
 

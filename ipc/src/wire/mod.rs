@@ -7,14 +7,14 @@
 
 pub mod cell;
 pub mod iceoryx;
+pub mod joined;
 pub mod outlet;
 pub mod page;
 pub mod register;
 mod sync;
 
 pub use cell::{LAYOUT, Reading};
+pub use joined::{AHEAD_MAX, Plug, Room, TAPS_MAX, TapCounts, TapEnd, TapGauge, TapState};
 pub use outlet::{Outlet, OutputCounts};
 pub use page::{Page, Reader, WIRES_MAX, Writer};
-pub use register::{
-    InputCounts, Limits, Plug, Register, Room, TAPS_MAX, TapCounts, TapEnd, TapGauge, TapState,
-};
+pub use register::{InputCounts, Limits, Register};

@@ -9,8 +9,8 @@
 
 use std::sync::Arc;
 
+use super::joined::{Joined, Plug, TapEnd, TapGauge, TapState, join, release, sweep, window_of};
 use super::page::Writer;
-use super::register::{Joined, Plug, TapEnd, TapGauge, TapState, join, release, sweep, window_of};
 use crate::clock::Time;
 use crate::message::{Payload, WORDS_MAX, Words};
 use crate::tap::{self, Window};
@@ -48,7 +48,8 @@ impl Outlet {
         }
     }
 
-    /// Joins an inhibitor. Does not allocate if it brings [`Room::full`](super::Room::full). `Err` gives it back when [`TAPS_MAX`] stand there already.
+    /// Joins an inhibitor. Does not allocate if it brings [`Room::full`](super::Room::full). `Err` gives it back
+    /// when [`TAPS_MAX`](super::TAPS_MAX) stand there already.
     pub fn inhibit(&mut self, end: TapEnd) -> Result<(), TapEnd> {
         join(&mut self.taps, end)
     }

@@ -156,6 +156,15 @@ impl Writer {
     pub fn kind(&self) -> Kind {
         self.kind
     }
+
+    /// A reading end of the same wire.
+    pub fn reader(&self) -> Reader {
+        Reader {
+            cell: self.cell,
+            kind: self.kind,
+            _page: self._page.clone(),
+        }
+    }
 }
 
 impl Reader {

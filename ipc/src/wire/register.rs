@@ -8,180 +8,12 @@
 //! ```
 
 use std::sync::Arc;
-use std::sync::atomic::{AtomicU64, Ordering};
 
+use super::joined::{Joined, Plug, TapEnd, TapGauge, TapState, join, plausible, release, sweep, window_of};
 use super::page::Reader;
-use crate::clock::{Span, Time};
+use crate::clock::Time;
 use crate::message::{Kind, WORDS_MAX, Words};
 use crate::tap::{self, Window};
-
-/// Most suppressors on one input, and inhibitors on one output: one for each level above it and then
-/// some; the source's largest stack has fourteen layers (Brooks 1991 §8.2).
-pub const TAPS_MAX: usize = 16;
-
-/// How far ahead of the beat a stamp may lie: all clocks are one clock, so only the time the beat itself
-/// has been running counts, and a beat that ran longer than this was an overrun of any sensible period.
-pub const AHEAD_MAX: Span = Span::millis(100);
-
-/// Who a tap belongs to: 0 for the creature file itself, else the number of the plugged layer.
-pub type Plug = u32;
-
-/// A tap as it is joined to a port.
-#[derive(Debug)]
-pub struct TapEnd {
-    /// Where its messages come from.
-    pub reader: Reader,
-    /// Its time constant τ.
-    pub time_constant: Span,
-    /// Level of the layer it comes from.
-    pub level: u8,
-    /// Whose it is.
-    pub plug: Plug,
-    /// Where what happens at it is counted, for those who watch.
-    pub gauge: Arc<TapGauge>,
-    /// Room at its port for it and those before it. A tap that is joined while its layer beats brings it along;
-    /// one that is joined when the layer is built needs none.
-    pub room: Room,
-}
-
-/// Memory for the taps of one port, made by whoever may allocate and given back with the tap that brought it.
-/// Most ports are never tapped, so they have none of their own.
-#[derive(Debug, Default)]
-pub struct Room(Vec<Joined>);
-
-impl Room {
-    /// No room: for ports of a layer that does not beat yet.
-    pub fn none() -> Room {
-        Room(Vec::new())
-    }
-
-    /// Room for as many taps as a port may have.
-    pub fn full() -> Room {
-        Room(Vec::with_capacity(TAPS_MAX))
-    }
-}
-
-/// Counters of a tap that other threads may look at.
-#[derive(Debug, Default)]
-pub struct TapGauge {
-    delivered: AtomicU64,
-    rejected: AtomicU64,
-    faults: AtomicU64,
-}
-
-impl TapGauge {
-    /// What was counted so far.
-    pub fn counts(&self) -> TapCounts {
-        // Relaxed: numbers to look at; nothing hangs on their order.
-        TapCounts {
-            delivered: self.delivered.load(Ordering::Relaxed),
-            rejected: self.rejected.load(Ordering::Relaxed),
-            faults: self.faults.load(Ordering::Relaxed),
-        }
-    }
-}
-
-/// Counts one more. Only the thread that owns the port counts, so load and store need not be one step.
-fn count(counter: &AtomicU64) {
-    counter.store(counter.load(Ordering::Relaxed) + 1, Ordering::Relaxed);
-}
-
-/// What was counted at one tap.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct TapCounts {
-    /// Messages of the tap that took effect.
-    pub delivered: u64,
-    /// Messages of the wire that the tap's windows rejected or dropped.
-    pub rejected: u64,
-    /// Messages of the tap that were no message: not a number, out of range, or stamped in the future.
-    pub faults: u64,
-}
-
-/// A tap with what was last seen of it.
-#[derive(Debug)]
-pub(super) struct Joined {
-    pub(super) end: TapEnd,
-    pub(super) seen: u64,
-    pub(super) window: Option<Window>,
-    pub(super) words: Words,
-    /// Whether its newest message came in at the last look.
-    pub(super) fresh: bool,
-    /// Told to go; stays until its window has run out, so that nothing rejected comes back to life.
-    pub(super) leaving: bool,
-}
-
-impl Joined {
-    pub(super) fn new(end: TapEnd) -> Joined {
-        // A message written before the tap was joined has no effect: the wire was not tapped then.
-        let seen = end.reader.read().map_or(0, |r| r.number);
-        Joined {
-            end,
-            seen,
-            window: None,
-            words: [0.0; WORDS_MAX],
-            fresh: false,
-            leaving: false,
-        }
-    }
-
-    /// Takes in the tap's newest message if there is one that was not seen.
-    #[inline]
-    pub(super) fn look(&mut self, now: Time, limits: Option<&Limits>) {
-        self.fresh = false;
-        if self.leaving {
-            return;
-        }
-        if !self.end.reader.changed(self.seen) {
-            return;
-        }
-        self.take_in(now, limits);
-    }
-
-    /// Takes in the tap's newest message, of which there is one that was not seen.
-    fn take_in(&mut self, now: Time, limits: Option<&Limits>) {
-        let mut words = [0.0; WORDS_MAX];
-        let Some((number, stamp)) = self.end.reader.take_newer(self.seen, &mut words) else {
-            return;
-        };
-        self.seen = number;
-        let newest = self.window.map_or(Time::ZERO, |w| w.stamp);
-        let stamp = match plausible(stamp, now) {
-            Some(stamp) if stamp >= newest && limits.is_none_or(|l| l.accept(&words)) => stamp,
-            _ => {
-                count(&self.end.gauge.faults);
-                return;
-            }
-        };
-        self.window = Some(Window {
-            stamp,
-            time_constant: self.end.time_constant,
-        });
-        self.words = words;
-        self.fresh = true;
-    }
-
-    /// Counts a message of the wire that this tap's window kept out.
-    pub(super) fn reject(&self) {
-        count(&self.end.gauge.rejected);
-    }
-
-    /// Counts a message of the tap that took effect.
-    pub(super) fn take_effect(&self) {
-        count(&self.end.gauge.delivered);
-    }
-
-    pub(super) fn state(&self) -> TapState {
-        TapState {
-            window: self.window,
-            counts: self.end.gauge.counts(),
-        }
-    }
-
-    #[inline]
-    pub(super) fn gone(&self, now: Time) -> bool {
-        self.leaving && self.window.is_none_or(|w| now >= w.stamp + w.time_constant)
-    }
-}
 
 /// What an input port takes: kind and range of every number.
 #[derive(Clone, Copy, Debug)]
@@ -196,7 +28,7 @@ pub struct Limits {
 
 impl Limits {
     #[inline]
-    fn accept(&self, words: &Words) -> bool {
+    pub(super) fn accept(&self, words: &Words) -> bool {
         if self.kind == Kind::Number {
             // The bounds are finite, so what is no number or infinite is not between them.
             return (self.low..=self.high).contains(&words[0]);
@@ -264,7 +96,8 @@ impl Register {
     }
 
     /// Joins a suppressor: after those of lower or equal level, before those of higher level. Does not
-    /// allocate if the tap brings [`Room::full`]. `Err` gives the tap back when [`TAPS_MAX`] stand there already.
+    /// allocate if the tap brings [`Room::full`](super::Room::full). `Err` gives the tap back when
+    /// [`TAPS_MAX`](super::TAPS_MAX) stand there already.
     pub fn suppress(&mut self, end: TapEnd) -> Result<(), TapEnd> {
         join(&mut self.taps, end)
     }
@@ -456,66 +289,5 @@ impl Register {
     /// The window of the tap that is counted at `gauge`; `None` if it is not joined here or said nothing yet.
     pub fn window_of(&self, gauge: &Arc<TapGauge>) -> Option<Window> {
         window_of(&self.taps, gauge)
-    }
-}
-
-/// A tap as it stands, for those who watch.
-#[derive(Clone, Copy, Debug)]
-pub struct TapState {
-    /// Its newest message's window.
-    pub window: Option<Window>,
-    /// What was counted.
-    pub counts: TapCounts,
-}
-
-/// The stamp of a message read at `now`: never later than `now` (it was written while this beat was
-/// already under way), or `None` if it lies so far ahead that its writer's clock is wrong.
-#[inline]
-fn plausible(stamp: Time, now: Time) -> Option<Time> {
-    (stamp <= now + AHEAD_MAX).then(|| stamp.min(now))
-}
-
-/// Joins `end` after taps of lower or equal level; gives it back when there is no room.
-pub(super) fn join(taps: &mut Vec<Joined>, end: TapEnd) -> Result<(), TapEnd> {
-    if taps.len() == TAPS_MAX {
-        return Err(end);
-    }
-    let mut end = end;
-    if taps.len() == taps.capacity() && end.room.0.capacity() > taps.len() {
-        // Moves into the room that came along; the old one leaves with the tap.
-        let mut room = std::mem::take(&mut end.room.0);
-        room.append(taps);
-        end.room.0 = std::mem::replace(taps, room);
-    }
-    let place = taps
-        .iter()
-        .position(|t| t.end.level > end.level)
-        .unwrap_or(taps.len());
-    taps.insert(place, Joined::new(end));
-    Ok(())
-}
-
-/// Tells the taps of `plug` to go.
-pub(super) fn release(taps: &mut [Joined], plug: Plug) {
-    for tap in taps.iter_mut().filter(|t| t.end.plug == plug) {
-        tap.leaving = true;
-    }
-}
-
-pub(super) fn window_of(taps: &[Joined], gauge: &Arc<TapGauge>) -> Option<Window> {
-    let tap = taps.iter().find(|t| Arc::ptr_eq(&t.end.gauge, gauge))?;
-    tap.window
-}
-
-/// Hands over the taps that have left and whose windows have run out.
-#[inline]
-pub(super) fn sweep(taps: &mut Vec<Joined>, now: Time, mut gone: impl FnMut(TapEnd)) {
-    let mut k = 0;
-    while k < taps.len() {
-        if taps[k].gone(now) {
-            gone(taps.remove(k).end);
-        } else {
-            k += 1;
-        }
     }
 }

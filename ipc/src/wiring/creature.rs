@@ -194,6 +194,8 @@ pub struct Halt {
     pub hold: Span,
     /// How old a command to the body may be.
     pub stale: Span,
+    /// A hardware watchdog that is fed while all is well, an absolute path.
+    pub watchdog_device: Option<std::path::PathBuf>,
 }
 
 /// What processes outside the daemon may do. Its own user may always plug in, others only if named here.

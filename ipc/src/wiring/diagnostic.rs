@@ -154,6 +154,7 @@ pub struct Findings {
     more: usize,
     compared: usize,
     lost: bool,
+    lost_lines: bool,
 }
 
 impl Findings {
@@ -207,14 +208,25 @@ impl Findings {
         }
     }
 
-    /// Notes that a part of the file could not be read: what seems to be missing may stand in that part.
-    pub fn lose(&mut self) {
+    /// Notes that a wire or a tap could not be read: a module that seems to lack one may not.
+    pub fn lose_wire(&mut self) {
         self.lost = true;
     }
 
-    /// Whether a part of the file could not be read.
-    pub fn has_lost(&self) -> bool {
+    /// Notes that whole lines could not be read: whatever seems to be missing may stand in them.
+    pub fn lose_lines(&mut self) {
+        self.lost = true;
+        self.lost_lines = true;
+    }
+
+    /// Whether a wire or a tap may stand in what could not be read.
+    pub fn has_lost_wires(&self) -> bool {
         self.lost
+    }
+
+    /// Whether anything may stand in what could not be read.
+    pub fn has_lost_lines(&self) -> bool {
+        self.lost_lines
     }
 
     /// How many errors were found so far.

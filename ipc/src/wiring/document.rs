@@ -46,6 +46,18 @@ impl<'t, 's> Keys<'t, 's> {
         self.at.clone()
     }
 
+    /// What the table is called in errors.
+    pub fn what(&self) -> &str {
+        &self.what
+    }
+
+    /// Whether there are keys that were not asked for.
+    pub fn has_others(&self) -> bool {
+        self.table
+            .iter()
+            .any(|(k, _)| !self.known.contains(&k.get_ref().as_ref()))
+    }
+
     /// Whether `key` is given.
     pub fn has(&self, key: &str) -> bool {
         self.table.contains_key(key)
@@ -53,10 +65,7 @@ impl<'t, 's> Keys<'t, 's> {
 
     /// The value of `key`, which then still is not asked for.
     pub fn get(&self, key: &str) -> Option<&'t Spanned<DeValue<'s>>> {
-        self.table
-            .iter()
-            .find(|(k, _)| k.get_ref() == key)
-            .map(|(_, v)| v)
+        self.table.get(key)
     }
 
     /// Every key with its place and value, in the order of the file; all of them count as asked for.
@@ -138,12 +147,13 @@ pub fn word(
     words: &[&str],
     findings: &mut Findings,
 ) -> Option<usize> {
-    let expected = one_of(what, "", words.iter().copied());
+    let plain = |help: String| help.replace(&format!("one of the {what}s "), "one of ");
+    let expected = plain(one_of(what, "", words.iter().copied()));
     let expected = expected.strip_prefix("expected ").unwrap_or(&expected);
     let given = text(value, expected, findings)?;
     let found = words.iter().position(|w| *w == given.value);
     if found.is_none() {
-        let help = findings.one_of(what, &given.value, words.iter().copied());
+        let help = plain(findings.one_of(what, &given.value, words.iter().copied()));
         let message = format!("unknown {what} {:?}", given.value);
         findings.refuse(Rule::UnknownWord, given.at, message, help);
     }
@@ -299,12 +309,8 @@ pub fn list<'t, 's>(
     let items = array(value, &format!("a list of {what}"), findings);
     if items.len() > most {
         let message = format!("the list has {} elements", items.len());
-        findings.refuse(
-            Rule::OutOfRange,
-            value.span(),
-            message,
-            format!("expected at most {most}"),
-        );
+        let help = format!("expected at most {most}");
+        findings.refuse(Rule::OutOfRange, value.span(), message, help);
     }
     items
 }

@@ -37,6 +37,8 @@ pub enum Value {
     Bit,
     /// One of some words.
     Word(&'static [&'static str]),
+    /// An absolute path.
+    Path,
     /// A port: `module.port`.
     Port,
     /// A list of ports.
@@ -92,6 +94,26 @@ pub enum Kinds {
     Bodies,
 }
 
+impl Value {
+    /// How such a value looks in a file.
+    pub fn example(&self) -> String {
+        match self {
+            Value::Name | Value::ModuleKind | Value::BodyKind => "\"...\"".into(),
+            Value::Whole { low, .. } => low.to_string(),
+            Value::Number { low, .. } => low.to_string(),
+            Value::Time { .. } => "\"20ms\"".into(),
+            Value::Bit => "true".into(),
+            Value::Word(words) => format!("{:?}", words[0]),
+            Value::Path => "\"/...\"".into(),
+            Value::Port => "\"module.port\"".into(),
+            Value::Ports | Value::PortsOrAll => "[\"module.port\"]".into(),
+            Value::Wires => "[\"module.output -> module.input\"]".into(),
+            Value::Accounts | Value::Tables(_) => "[...]".into(),
+            Value::Table(_) | Value::Named(_) => "{ ... }".into(),
+        }
+    }
+}
+
 const fn key(name: &'static str, takes: Value, default: &'static str, about: &'static str) -> Key {
     Key {
         name,
@@ -113,6 +135,9 @@ const fn needed(name: &'static str, takes: Value, about: &'static str) -> Key {
 }
 
 const TIME: Value = Value::Time { positive: true };
+
+/// Highest priority of a layer: above it come the daemon's watchdog at 98, and the kernel's own threads at 99.
+pub const PRIORITY_MAX: u64 = 97;
 
 /// Most layer processes attached at once: each maps a page, and iceoryx2 serves 64 readers of one.
 pub const LAYERS_MAX: u64 = 32;
@@ -194,9 +219,12 @@ pub static LAYER: Grammar = Grammar {
         ),
         key(
             "priority",
-            Value::Whole { low: 1, high: 99 },
+            Value::Whole {
+                low: 1,
+                high: PRIORITY_MAX,
+            },
             "",
-            "SCHED_FIFO priority; rate-monotonic if not given",
+            "SCHED_FIFO priority, below the watchdog at 98; rate-monotonic if not given",
         ),
         key(
             "cpu",
@@ -323,6 +351,12 @@ pub static HALT: Grammar = Grammar {
             TIME,
             "\"200ms\"",
             "a command to the body that is older halts it",
+        ),
+        key(
+            "watchdog_device",
+            Value::Path,
+            "",
+            "a hardware watchdog that is fed while all is well",
         ),
     ],
     kinds: None,

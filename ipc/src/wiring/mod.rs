@@ -19,6 +19,7 @@ mod read;
 mod render;
 pub mod rule;
 pub mod schema;
+pub mod sketch;
 mod syntax;
 
 pub use catalog::{Catalog, Declaration, Parameter, Port, Setting, Takes};

@@ -63,6 +63,8 @@ rules! {
     BadName = "bad-name",
     /// The name of the body is no module's.
     ReservedName = "reserved-name",
+    /// The path of a device is absolute.
+    BadPath = "bad-path",
     /// A port is written as `module.port`.
     BadPort = "bad-port",
     /// A wire is written as `from.output -> to.input`.

@@ -89,6 +89,7 @@ fn of_value(value: &Value, catalog: &dyn Catalog) -> Json {
         json!({"oneOf": kinds.iter().map(kind).collect::<Vec<_>>()})
     };
     match *value {
+        Value::Path => json!({"type": "string", "pattern": "^/"}),
         Value::Name => json!({"$ref": "#/$defs/name"}),
         Value::ModuleKind => one_of(catalog.modules()),
         Value::BodyKind => one_of(catalog.bodies()),
@@ -154,7 +155,10 @@ fn of_parameter(parameter: &Parameter) -> Json {
         Takes::Number { low, high, default } => (number(low, high), default.map(Json::from)),
         Takes::Span { default } => (
             json!({"$ref": "#/$defs/positive"}),
-            default.map(|d| d.to_string().into()),
+            // Zero, which nobody can give, stands for none.
+            default
+                .filter(|d| *d > crate::clock::Span::ZERO)
+                .map(|d| d.to_string().into()),
         ),
         Takes::Bit { default } => (json!({"type": "boolean"}), default.map(Json::from)),
         Takes::Word { words, default } => (json!({"enum": words}), default.map(Json::from)),
@@ -167,10 +171,14 @@ fn of_parameter(parameter: &Parameter) -> Json {
             json!({"type": "array", "items": number(low, high), "maxItems": most}),
             default.map(Json::from),
         ),
-        Takes::Spans { most, default } => (
-            json!({"type": "array", "items": {"$ref": "#/$defs/time"}, "maxItems": most}),
-            default.map(|spans| spans.iter().map(ToString::to_string).collect::<Vec<_>>().into()),
-        ),
+        Takes::Spans { most, default } => {
+            let spell =
+                |spans: &[crate::clock::Span]| spans.iter().map(|s| s.to_string()).collect::<Vec<_>>();
+            (
+                json!({"type": "array", "items": {"$ref": "#/$defs/time"}, "maxItems": most}),
+                default.map(|d| spell(d).into()),
+            )
+        }
     };
     let unit = match parameter.unit {
         "" | "1" => String::new(),

@@ -37,7 +37,7 @@ pub fn parse<'s>(source: &'s Source, findings: &mut Findings) -> Option<Spanned<
             twice(source, table.get_ref(), at, findings);
             continue;
         }
-        findings.lose();
+        findings.lose_lines();
         // What follows on the same line mostly follows from the first slip.
         let line = line_around(&source.text, at.start);
         if last_line.as_ref() != Some(&line) {
@@ -51,13 +51,13 @@ pub fn parse<'s>(source: &'s Source, findings: &mut Findings) -> Option<Spanned<
 
 /// Drops what was found on lines that are not TOML: it follows from that.
 pub(super) fn drop_echoes(source: &Source, findings: &mut Findings) {
-    if !findings.has_lost() {
+    if !findings.has_lost_lines() {
         return;
     }
     let mut broken: Vec<Range<usize>> = Vec::new();
     findings.retain(|d| {
         if d.rule == Some(Rule::Syntax) {
-            broken.push(line_around(&source.text, d.at.start));
+            broken.push(broken_by(&source.text, d.at.start));
         }
         true
     });
@@ -67,6 +67,17 @@ pub(super) fn drop_echoes(source: &Source, findings: &mut Findings) {
                 .iter()
                 .any(|b| b.start <= d.at.start && d.at.start <= b.end)
     });
+}
+
+/// What a slip at `offset` makes unreadable: its line or, if that should begin a table, everything up to the
+/// next that does.
+fn broken_by(text: &str, offset: usize) -> Range<usize> {
+    let line = line_around(text, offset);
+    if !text[line.clone()].trim_start().starts_with('[') {
+        return line;
+    }
+    let next = text[line.end..].find("\n[");
+    line.start..next.map_or(text.len(), |n| line.end + n)
 }
 
 /// The bytes of the line that `offset` stands in.
@@ -93,6 +104,13 @@ fn explain(said: &str, text: &str, at: &Range<usize>) -> (String, String) {
     };
     let line = &text[line_around(text, at.start)];
     let value = line.split_once('=').map_or("", |(_, value)| value.trim());
+    if line.trim_end().ends_with('=') && at.start >= line_around(text, at.start).start {
+        let key = line.trim_end().trim_end_matches('=').trim();
+        return (
+            format!("{key} has no value"),
+            format!("expected a value after {:?}", "="),
+        );
+    }
     let bare = value.split(['#', ',', '}', ']']).next().unwrap_or("").trim();
     let time = bare.starts_with(|c: char| c.is_ascii_digit()) && bare.ends_with(|c: char| c.is_alphabetic());
     let word = bare.starts_with(|c: char| c.is_alphabetic());

@@ -189,6 +189,11 @@ impl RunningLayer {
         for register in &mut self.registers {
             register.look(now, |end| give_back(&mut self.returned, end));
         }
+        self.look_at_inhibitors(now);
+    }
+
+    /// Takes in what the inhibitors of every output say; see [`Outlet::look`].
+    pub fn look_at_inhibitors(&mut self, now: Time) {
         for outlet in &mut self.outlets {
             outlet.look(now, |end| give_back(&mut self.returned, end));
         }
@@ -236,6 +241,12 @@ impl RunningLayer {
         for outlet in &mut self.outlets {
             outlet.commit(now, |end| give_back(&mut self.returned, end));
         }
+    }
+
+    /// Writes what was emitted on the n-th output, as [`RunningLayer::commit`] does on all of them. Says whether
+    /// it wrote.
+    pub fn commit_one(&mut self, output: usize, now: Time) -> bool {
+        self.outlets[output].commit(now, |end| give_back(&mut self.returned, end))
     }
 
     fn obey(&mut self, command: Command) {

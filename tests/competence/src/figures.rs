@@ -37,8 +37,10 @@ pub struct Figures {
     pub drift_m: f64,
     /// Messages of taps that were no message, and were refused.
     pub refused: f64,
-    /// Times it ran out of charge; only with a battery.
+    /// Times it ran out of charge, and charges begun; only with a battery.
     pub flat: f64,
+    /// Charges begun.
+    pub charges: f64,
 }
 
 /// A column of the table.
@@ -121,6 +123,18 @@ pub const COLUMNS: &[Column] = &[
         about: "share of the time in which it had kept within 25 cm for 30 s",
         of: |f| (100.0 * f.stuck_s, 3600.0 * f.hours),
         decimals: 1,
+    },
+    Column {
+        title: "charges/h",
+        about: "times it came home to charge",
+        of: |f| (f.charges, f.hours),
+        decimals: 1,
+    },
+    Column {
+        title: "flat/h",
+        about: "times it ran out of charge",
+        of: |f| (f.flat, f.hours),
+        decimals: 2,
     },
     Column {
         title: "farthest m",

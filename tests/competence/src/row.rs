@@ -36,6 +36,8 @@ pub struct Row {
     pub noisy: bool,
     /// How many sonars are dead.
     pub dead: usize,
+    /// Hours that a charge lasts; nought stands for ever.
+    pub battery_h: f64,
     /// How many robots are in the office.
     pub robots: usize,
     /// Whether it is an empty, quiet room instead.
@@ -58,6 +60,7 @@ const PLAIN: Row = Row {
     disturbance: Disturbance::None,
     noisy: false,
     dead: 0,
+    battery_h: 0.0,
     robots: 1,
     quiet: false,
     world: World::Office,
@@ -128,6 +131,13 @@ pub const ROWS: &[Row] = &[
         robots: 2,
         ..PLAIN
     },
+    Row {
+        name: "six",
+        title: "six levels, a battery for forty minutes",
+        levels: 6,
+        battery_h: 0.67,
+        ..PLAIN
+    },
 ];
 
 /// The row called `name`.
@@ -136,7 +146,13 @@ pub fn find(name: &str) -> Option<&'static Row> {
 }
 
 /// Manifests of the levels above 0, lowest first.
-pub const MANIFESTS: &[&str] = &[allen::WANDER, allen::EXPLORE];
+pub const MANIFESTS: &[&str] = &[
+    allen::WANDER,
+    allen::EXPLORE,
+    allen::CORRIDOR,
+    allen::COMPANY,
+    allen::HOME,
+];
 
 impl Row {
     /// The creature file of this row with `seed`; `layout` is the body's line that says where.
@@ -151,6 +167,9 @@ impl Row {
             body += "\nnoise = 0.04\ndropout = 0.02\nghosts = 0.6\ncross_talk = 0.02";
         }
         let _ = write!(body, "\ndead = {:?}", dead(self.dead, seed));
+        if self.battery_h > 0.0 {
+            let _ = write!(body, "\ncharge = {:?}", self.battery_h);
+        }
         let mut text = String::new();
         for line in allen::CREATURE.lines() {
             let key = line.split('=').next().unwrap_or("").trim();

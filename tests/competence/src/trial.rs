@@ -141,10 +141,14 @@ fn put(machine: &mut Machine, world: OfficeWorld) {
     machine.body.as_mut().expect("the creature has a body").world = Box::new(world);
 }
 
-fn office_of(machine: &mut Machine) -> OfficeGuard<'_> {
+fn world_of(machine: &mut Machine) -> &mut OfficeWorld {
     let body = machine.body.as_mut().expect("the creature has a body");
     let world = body.world.as_any().downcast_mut::<OfficeWorld>();
-    world.expect("the body is in an office").office()
+    world.expect("the body is in an office")
+}
+
+fn office_of(machine: &mut Machine) -> OfficeGuard<'_> {
+    world_of(machine).office()
 }
 
 impl Robot {
@@ -256,6 +260,8 @@ impl Robot {
         for tap in &self.run.machine.taps {
             figures.refused += tap.gauge.counts().faults as f64;
         }
+        let battery = world_of(&mut self.run.machine).battery();
+        (figures.flat, figures.charges) = (battery.flat as f64, battery.charges as f64);
         let office = office_of(&mut self.run.machine);
         let contacts = office.contacts_of(self.index);
         figures.caused = contacts.caused as f64;

@@ -5,7 +5,9 @@
 
 use std::time::{Duration, Instant};
 
+use daemon::admission::Admission;
 use daemon::control::{self, Control};
+use daemon::feeder::Fed;
 use daemon::machine::Machine;
 use daemon::running::{self, Running};
 use ipc::clock::Span;
@@ -99,15 +101,17 @@ impl Alive {
     pub fn start(setting: &Setting) -> Result<Alive, String> {
         let name = format!("lab{}", std::process::id());
         let creature = checked(setting, &name);
+        let admission = Admission::of(&creature.outsiders)?;
         control::claim(&name).map_err(|e| e.to_string())?;
         let domain = Domain::join(&name).map_err(|e| e.to_string())?;
         let owned = domain
             .own(&name, output_ports(&creature).count())
             .map_err(|e| e.to_string())?;
         let machine = Machine::new(creature, &modules::kinds(), owned.page().clone(), None);
-        let running = running::start(&name, machine, owned, domain).map_err(|e| e.to_string())?;
-        let control =
-            Control::open(&name, running.shared.clone()).map_err(|e| format!("the control socket: {e}"))?;
+        let running =
+            running::start(&name, machine, owned, domain, None, Fed::default()).map_err(|e| e.to_string())?;
+        let control = Control::open(&name, running.shared.clone(), admission)
+            .map_err(|e| format!("the control socket: {e}"))?;
         // The beats of the first 200 ms warm the caches and are in nobody's interval.
         std::thread::sleep(Duration::from_millis(200));
         modules::heard(|_| ());

@@ -198,6 +198,7 @@ pub fn plan(setting: &Setting, name: &str, phase: Span, wake: Wake) -> Plan {
         cpu: Some(setting.cpu),
         wake,
         overrun: Overrun::Skip,
+        sealed: true,
     }
 }
 

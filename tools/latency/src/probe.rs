@@ -8,7 +8,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use daemon::executor::gauge::{BeatCounts, BeatGauge, Sample};
 use daemon::executor::{self, Beating, Beats, Plan, Refusal};
-use daemon::motor::HaltChannel;
+use daemon::halt::HaltChannel;
 use ipc::clock::{self, Time};
 
 use crate::plant::{Plant, Planted};

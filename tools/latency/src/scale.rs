@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 
 use daemon::executor::gauge::BeatGauge;
 use daemon::executor::{self, Beats, Plan, Schedule, host};
-use daemon::motor::HaltChannel;
+use daemon::halt::HaltChannel;
 use ipc::clock::{self, Span, Time};
 use ipc::wire::iceoryx::Domain;
 use ipc::wiring::creature::{Overrun, Wake};
@@ -150,6 +150,7 @@ fn pace(cpu: usize, layers: usize, each: usize, length: Duration) -> Result<Valu
         cpu: Some(cpu),
         wake: Wake::Sleep,
         overrun: Overrun::Skip,
+        sealed: true,
     };
     let (gauge, stop) = (Arc::new(BeatGauge::default()), Arc::new(AtomicBool::new(false)));
     let begin = clock::monotonic() + Span::millis(20);

@@ -114,14 +114,15 @@ impl<'r, 't, 's> Reading<'r, 't, 's> {
                 };
                 let help = format!("expected one of {}", SUBJECTS.join(", "));
                 self.findings.error(at.clone(), message, help);
-                return self.done(at, because, None);
+                return self.done(at, because, None, false);
             }
         };
-        self.done(at, because, what)
+        self.done(at, because, what, true)
     }
 
-    fn done(self, at: Range<usize>, because: Option<String>, what: Option<What>) -> Item {
-        if what.is_some() {
+    /// The item; of an expectation about nothing nobody knows which keys it may have.
+    fn done(self, at: Range<usize>, because: Option<String>, what: Option<What>, known: bool) -> Item {
+        if known {
             self.keys.finish(self.findings);
         }
         Item {

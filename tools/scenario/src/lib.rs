@@ -9,6 +9,7 @@
 //! - [`run`]: a plan on the virtual clock, and what came of it
 //! - [`judge`]: whether what came is what was expected
 //! - [`suite`]: files and folders, run in parallel
+//! - [`prefixes`]: every prefix of the stack works, whatever the layers above do
 //! - [`report`]: for people, for programs, for continuous integration
 //!
 //! Must never tell the time: what a scenario says is the same whenever and wherever it runs.
@@ -19,6 +20,7 @@ pub mod judge;
 pub mod kinds;
 mod names;
 pub mod plan;
+pub mod prefixes;
 pub mod read;
 pub mod report;
 pub mod run;

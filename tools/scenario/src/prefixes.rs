@@ -6,12 +6,14 @@
 //! plugged, unplugged or killed above their own level.
 //!
 //! ```text
-//!   for each k:   alone       every scenario of level ≤ k, layers ≤ k only
-//!                 meddled     every competence of level ≤ k, while the manifests above its level come and go at
-//!                             moments drawn from a seed
+//!   for each k:   alone       layers up to k: every scenario of level k, and the competences of the levels below
+//!                             with the layers between running all the time
+//!                 meddled     every competence of level ≤ k, while all layers above k join, leave, stand still
+//!                             and go on at moments drawn from a seed
 //! ```
+//! A scenario of a level below k that is no competence was tried at its own level, alone. To the layers below,
+//! one that is killed and one that says good-bye are the same: nothing is written any more, windows run out.
 
-use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use afsm::Kinds;
@@ -19,12 +21,13 @@ use afsm::assemble::seed_of;
 use afsm::random::Random;
 use daemon::virtual_run::{Manifest, Stimulus};
 use ipc::clock::Span;
+use ipc::wiring::{Creature, Directory, Rejected};
 
 use crate::plan::Scenario;
 use crate::run::How;
 use crate::suite::{Verdict, in_parallel, try_one};
 
-/// A layer that can be plugged in above.
+/// A layer that can be plugged in.
 #[derive(Clone, Debug)]
 pub struct Upper {
     /// Its name.
@@ -67,6 +70,22 @@ pub struct Prefix {
     pub meddled: (usize, usize),
 }
 
+impl Upper {
+    /// The layer of `manifest`, checked against `creature`.
+    ///
+    /// # Errors
+    /// Every error in it.
+    pub fn new(manifest: Manifest, creature: &Creature, kinds: &Kinds) -> Result<Upper, Rejected> {
+        let checked = manifest.check(kinds, &Directory::of(creature, &creature.name))?;
+        let layer = checked.layers.first().expect("a checked manifest has a layer");
+        Ok(Upper {
+            name: layer.name.clone(),
+            level: layer.level,
+            manifest: Arc::new(manifest),
+        })
+    }
+}
+
 impl Prefix {
     /// Whether all passed.
     pub fn passed(&self) -> bool {
@@ -88,81 +107,135 @@ pub fn prefixes(
 ) -> Vec<Prefix> {
     let mut prefixes = Vec::new();
     for level in 0..=top {
-        let of_level: Vec<Scenario> = scenarios
-            .iter()
-            .filter(|s| s.level <= level)
-            .map(|s| cut(s, level))
-            .collect();
-        let verdicts = in_parallel(&of_level, |s| try_one(s, kinds, How::default()));
-        prefixes.push(Prefix {
-            level,
-            way: Way::Alone,
-            verdicts,
-            meddled: (0, 0),
-        });
-        let mut meddled = (0, 0);
-        let mut with_uppers = Vec::new();
-        for scenario in of_level.iter().filter(|s| s.competence) {
+        let held = |s: &&Scenario| s.level == level || (s.level < level && s.competence);
+        let mut alone: Vec<Scenario> = scenarios.iter().filter(held).cloned().collect();
+        for scenario in &mut alone {
+            scenario.creature.layers.retain(|l| l.level <= level);
+            between(scenario, uppers, level);
+        }
+        let mut meddled = Vec::new();
+        let (mut joins, mut leaves) = (0, 0);
+        for scenario in scenarios.iter().filter(|s| s.competence && s.level <= level) {
             for seed in seeds {
-                let (meddling, joins, leaves) = meddle(scenario, uppers, level, *seed);
-                meddled = (meddled.0 + joins, meddled.1 + leaves);
-                with_uppers.extend((joins > 0).then_some(meddling));
+                let mut with = scenario.clone();
+                between(&mut with, uppers, level);
+                let counts = meddle(&mut with, uppers, level, *seed);
+                if counts.0 > 0 {
+                    (joins, leaves) = (joins + counts.0, leaves + counts.1);
+                    meddled.push(with);
+                }
             }
         }
-        let verdicts = in_parallel(&with_uppers, |s| try_one(s, kinds, How::default()));
-        prefixes.push(Prefix {
-            level,
-            way: Way::Meddled,
-            verdicts,
-            meddled,
-        });
+        for (way, tried, meddled) in [
+            (Way::Alone, alone, (0, 0)),
+            (Way::Meddled, meddled, (joins, leaves)),
+        ] {
+            prefixes.push(Prefix {
+                level,
+                way,
+                verdicts: in_parallel(&tried, |s| try_one(s, kinds, How::default())),
+                meddled,
+            });
+        }
     }
     prefixes
 }
 
-/// The scenario with only the creature's layers up to `level`.
-fn cut(scenario: &Scenario, level: u8) -> Scenario {
-    let mut cut = scenario.clone();
-    cut.creature.layers.retain(|l| l.level <= level);
-    cut
+/// The layers that may join `scenario` beside those it plugs itself.
+fn strangers<'u>(scenario: &Scenario, uppers: &'u [Upper]) -> Vec<&'u Upper> {
+    let own = |upper: &&Upper| {
+        let by_name = scenario.manifests.contains_key(&upper.name);
+        let leaves = |(_, s): &(Span, Stimulus)| matches!(s, Stimulus::Leave(name) if *name == upper.name);
+        by_name || scenario.stimuli.iter().any(leaves)
+    };
+    uppers.iter().filter(|u| !own(u)).collect()
 }
 
-/// The scenario with layers above `level` that come and go at moments drawn from `seed`; how often they came,
-/// and went. Layers that the scenario itself plugs are left to it.
-fn meddle(scenario: &Scenario, uppers: &[Upper], level: u8, seed: u64) -> (Scenario, usize, usize) {
-    let mut meddled = scenario.clone();
-    meddled.title = format!("{} (seed {seed})", scenario.title);
-    let (mut joins, mut leaves) = (0, 0);
-    for upper in uppers.iter().filter(|u| u.level > level) {
-        let own = |(_, s): &(Span, Stimulus)| matches!(s, Stimulus::Leave(name) if *name == upper.name);
-        if scenario.manifests.contains_key(&upper.name) || scenario.stimuli.iter().any(own) {
-            continue;
-        }
-        meddled
-            .manifests
-            .insert(upper.name.clone(), upper.manifest.clone());
-        let mut random = Random::new(seed_of(seed, &format!("{}/{}", scenario.title, upper.name)));
-        let mut at = 0.0;
-        let mut here = false;
-        loop {
-            at += random.between(BETWEEN_S.0, BETWEEN_S.1);
-            let Some(moment) = Span::from_seconds(at).filter(|m| *m < scenario.duration) else {
-                break;
-            };
-            let stimulus = if here {
-                leaves += 1;
-                // A layer that leaves and one that is killed are the same to those it leaves behind.
-                Stimulus::Leave(upper.name.clone())
-            } else {
-                joins += 1;
-                Stimulus::Plug(upper.manifest.clone())
-            };
-            here = !here;
-            meddled.stimuli.push((moment, stimulus));
+/// The layers above the scenario's own level, up to `level`, run from the start.
+fn between(scenario: &mut Scenario, uppers: &[Upper], level: u8) {
+    for upper in strangers(scenario, uppers) {
+        if upper.level > scenario.level && upper.level <= level {
+            invite(scenario, upper);
+            let plug = Stimulus::Plug(upper.manifest.clone());
+            scenario.stimuli.insert(0, (Span::ZERO, plug));
         }
     }
-    meddled.stimuli.sort_by_key(|(at, _)| *at);
-    (meddled, joins, leaves)
+}
+
+fn invite(scenario: &mut Scenario, upper: &Upper) {
+    let (name, manifest) = (upper.name.clone(), upper.manifest.clone());
+    scenario.manifests.insert(name, manifest);
+}
+
+/// What layers above do at the moments drawn for them.
+fn meddle(scenario: &mut Scenario, uppers: &[Upper], level: u8, seed: u64) -> (usize, usize) {
+    let (mut joins, mut leaves) = (0, 0);
+    let mut events = Vec::new();
+    for upper in strangers(scenario, uppers) {
+        if upper.level <= level {
+            continue;
+        }
+        let (mut here, mut still) = (false, false);
+        invite(scenario, upper);
+        for (moment, choice) in moments(scenario, &upper.name, seed) {
+            let name = upper.name.clone();
+            let stimulus = match (here, still) {
+                (false, _) => {
+                    (here, still) = (true, false);
+                    joins += 1;
+                    Stimulus::Plug(upper.manifest.clone())
+                }
+                (true, false) if choice < 0.3 => {
+                    still = true;
+                    Stimulus::Freeze(name)
+                }
+                (true, true) if choice < 0.5 => {
+                    still = false;
+                    Stimulus::Thaw(name)
+                }
+                (true, _) => {
+                    here = false;
+                    leaves += 1;
+                    Stimulus::Leave(name)
+                }
+            };
+            events.push((moment, stimulus));
+        }
+    }
+    // Layers of the creature file cannot leave: they stand still, from the start, and go on for a while.
+    let own = scenario.creature.layers.iter().filter(|l| l.level > level);
+    for name in own.map(|l| l.name.clone()) {
+        events.push((Span::ZERO, Stimulus::Freeze(name.clone())));
+        for (number, (moment, _)) in moments(scenario, &name, seed).into_iter().enumerate() {
+            let goes_on = number.is_multiple_of(2);
+            (joins, leaves) = (joins + usize::from(goes_on), leaves + usize::from(!goes_on));
+            events.push(if goes_on {
+                (moment, Stimulus::Thaw(name.clone()))
+            } else {
+                (moment, Stimulus::Freeze(name.clone()))
+            });
+        }
+    }
+    scenario.title = format!("{} (seed {seed})", scenario.title);
+    scenario.stimuli.extend(events);
+    scenario.stimuli.sort_by_key(|(at, _)| *at);
+    (joins, leaves)
+}
+
+/// Moments at which something happens to the layer called `name`, each with a number from 0 to 1.
+fn moments(scenario: &Scenario, name: &str, seed: u64) -> Vec<(Span, f64)> {
+    let mut random = Random::new(seed_of(seed, &format!("{}/{name}", scenario.title)));
+    let mut at = 0.0;
+    let drawn = std::iter::repeat_with(|| {
+        at += random.between(BETWEEN_S.0, BETWEEN_S.1);
+        (
+            Span::from_seconds(at).unwrap_or(Span(u64::MAX)),
+            random.between(0.0, 1.0),
+        )
+    });
+    drawn
+        .take_while(|(moment, _)| *moment < scenario.duration)
+        .collect()
 }
 
 /// One line for each level and way, and what failed.
@@ -212,13 +285,4 @@ pub fn json(prefixes: &[Prefix]) -> serde_json::Value {
     };
     let all: Vec<_> = prefixes.iter().map(one).collect();
     serde_json::json!({ "passed": prefixes.iter().all(Prefix::passed), "prefixes": all })
-}
-
-/// The layers above by level, for those who want to know what there is.
-pub fn levels(uppers: &[Upper]) -> BTreeMap<u8, Vec<&str>> {
-    let mut levels: BTreeMap<u8, Vec<&str>> = BTreeMap::new();
-    for upper in uppers {
-        levels.entry(upper.level).or_default().push(&upper.name);
-    }
-    levels
 }

@@ -23,6 +23,9 @@ use crate::stimuli::{self, Stimuli};
 /// How long a scenario goes on after the last time that its file names.
 const AFTERWARDS: Span = Span::secs(1);
 
+/// Longest run: a day among people takes a minute, and whatever is longer was hardly meant.
+const DURATION_MAX: Span = Span::secs(86_400);
+
 /// Whether the text is meant as a scenario: it has a line that sets `scenario`. Folders hold other files too.
 pub fn is_scenario(text: &str) -> bool {
     text.lines().any(|line| {
@@ -154,6 +157,10 @@ impl Reading<'_> {
         let times = || stimuli.times.iter().chain(items.iter().flat_map(|i| &i.times));
         let latest = times().map(|(time, _)| *time).max().unwrap_or_default();
         let end = duration.unwrap_or(latest.max(stimuli.latest()) + AFTERWARDS);
+        if end > DURATION_MAX {
+            let help = format!("expected at most {DURATION_MAX}");
+            f.error(0..0, format!("the scenario lasts {end}"), help);
+        }
         for (time, at) in times().filter(|(time, _)| *time >= end) {
             let help = format!("the scenario ends at {end}: set a longer duration");
             f.error(at.clone(), format!("nothing happens at {time} any more"), help);

@@ -5,6 +5,7 @@
 use std::collections::HashMap;
 use std::hash::Hash;
 use std::ops::Range;
+use std::path::PathBuf;
 
 use super::Checker;
 use crate::clock::Span;
@@ -43,6 +44,18 @@ impl Checker<'_> {
             }
         }
         values(given)
+    }
+
+    pub(super) fn watchdog_device(&mut self, given: Option<&Placed<String>>) -> Option<PathBuf> {
+        let given = given?;
+        let path = PathBuf::from(&given.value);
+        if !path.is_absolute() || given.value.contains('\0') {
+            let message = format!("{:?} is not an absolute path", given.value);
+            let help = "expected the path of a watchdog device such as \"/dev/watchdog\"";
+            self.findings
+                .refuse(Rule::BadPath, given.at.clone(), message, help);
+        }
+        Some(path)
     }
 
     pub(super) fn outsiders(&mut self, raw: &RawOutsiders, reflexes: &[Placed<PortName>]) -> Outsiders {

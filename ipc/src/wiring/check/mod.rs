@@ -25,13 +25,12 @@ mod wires;
 use std::collections::HashMap;
 use std::ops::Range;
 
-use toml::de::{DeTable, DeValue};
-
 use super::catalog::{Catalog, Declaration};
 use super::creature::{Creature, Halt, Layer, PortName};
 use super::diagnostic::{Findings, Rejected, Source};
 use super::directory::Directory;
-use super::document::{self as doc, Placed};
+use super::document::{self as doc, Keys, Placed};
+use super::grammar;
 use super::read::{self, Parts, RawLayer};
 use super::rule::Rule;
 use super::syntax;
@@ -61,9 +60,8 @@ fn check(source: &Source, catalog: &dyn Catalog, host: Option<&Directory>) -> Re
     let Some(root) = doc::parse(source, &mut findings) else {
         return findings.into_result(source, None);
     };
-    let creature = table((root.get_ref(), root.span()), None, catalog, host, &mut findings);
-    syntax::drop_echoes(source, &mut findings);
-    findings.into_result(source, creature)
+    let keys = Keys::new(root.get_ref(), 0..0, grammar::FILE.what);
+    check_part(keys, None, findings, source, catalog, host)
 }
 
 /// Checks a creature (or, with a `host`, a layer's manifest) that stands in a table of another document: the
@@ -83,47 +81,53 @@ pub fn inline(
     let Some(root) = doc::parse(source, &mut findings) else {
         return findings.into_result(source, None);
     };
-    let (mut here, mut at) = (root.get_ref(), root.span());
+    let what = format!("[{}]", path.join("."));
+    let mut keys = Keys::new(root.get_ref(), 0..0, what.clone());
     for step in path {
-        let below = here.get(*step).map(|value| (value.get_ref(), value.span()));
-        let Some((DeValue::Table(next), span)) = below else {
-            let message = format!("there is no table [{}]", path.join("."));
-            findings.refuse(Rule::MissingKey, at, message, "add it");
+        let Some(value) = keys.get(step) else {
+            let message = format!("there is no table {what}");
+            findings.refuse(Rule::MissingKey, keys.at(), message, "add it");
             return findings.into_result(source, None);
         };
-        (here, at) = (next, span);
+        let Some(table) = doc::table(value, what.clone(), &mut findings) else {
+            return findings.into_result(source, None);
+        };
+        keys = table;
     }
-    let creature = table((here, at), Some(name), catalog, host, &mut findings);
-    syntax::drop_echoes(source, &mut findings);
-    findings.into_result(source, creature)
+    check_part(keys, Some(name), findings, source, catalog, host)
 }
 
-/// Checks a creature (or, with a `host`, a manifest) that stands as a table within another file, where it
-/// may go without a name of its own and gets `name`.
-///
-/// `None` when anything is wrong, all of which is in `findings`.
-pub fn table(
-    (root, at): (&DeTable<'_>, Range<usize>),
+fn check_part(
+    keys: Keys<'_, '_>,
     name: Option<&str>,
+    mut findings: Findings,
+    source: &Source,
     catalog: &dyn Catalog,
     host: Option<&Directory>,
-    findings: &mut Findings,
-) -> Option<Creature> {
-    let before = findings.count();
-    let parts = read::read(root, at, name.is_some(), findings);
+) -> Result<Creature, Rejected> {
+    let at = keys.at();
+    let mut parts = read::read(keys, name.is_some(), &mut findings);
+    if let (None, Some(name)) = (&parts.name, name) {
+        parts.name = Some(Placed {
+            value: name.into(),
+            at: at.clone(),
+        });
+    }
     let kinds = |known: Vec<&'static Declaration>| known.into_iter().map(|d| (d.name, d)).collect();
     let mut checker = Checker {
         module_kinds: kinds(catalog.modules()),
         body_kinds: kinds(catalog.bodies()),
         findings,
         host,
+        at,
         modules: HashMap::new(),
         outputs: 0,
         writers: HashMap::new(),
         tapped: HashMap::new(),
     };
-    let creature = checker.creature(parts, name);
-    creature.filter(|_| findings.count() == before)
+    let creature = checker.creature(parts);
+    syntax::drop_echoes(source, &mut checker.findings);
+    checker.findings.into_result(source, creature)
 }
 
 /// A module (or the body) by name.
@@ -138,15 +142,17 @@ struct Known {
 }
 
 struct Checker<'c> {
-    findings: &'c mut Findings,
+    findings: Findings,
     module_kinds: HashMap<&'static str, &'static Declaration>,
     body_kinds: HashMap<&'static str, &'static Declaration>,
     host: Option<&'c Directory>,
+    /// Where the table that is checked begins.
+    at: Range<usize>,
     modules: HashMap<String, Known>,
     /// How many outputs there are so far.
     outputs: usize,
-    /// Which output feeds each input, and where that is said.
-    writers: HashMap<PortName, Placed<PortName>>,
+    /// Which output feeds each input, and where both stand.
+    writers: HashMap<PortName, (Placed<PortName>, Range<usize>)>,
     /// How many taps stand on each port (true for inputs).
     tapped: HashMap<(bool, PortName), usize>,
 }
@@ -160,7 +166,7 @@ struct Draft<'t, 's> {
 }
 
 impl<'c> Checker<'c> {
-    fn creature(&mut self, mut parts: Parts<'_, '_>, default: Option<&str>) -> Option<Creature> {
+    fn creature(&mut self, mut parts: Parts<'_, '_>) -> Option<Creature> {
         self.shape(&parts);
         let body = self.take_body(parts.body.take());
         self.layer_names(&parts.layers);
@@ -179,6 +185,7 @@ impl<'c> Checker<'c> {
             self.taps(draft, &raw_halt.reflexes);
         }
         let reflexes = self.reflexes(&raw_halt.reflexes);
+        let watchdog_device = self.watchdog_device(raw_halt.watchdog_device.as_ref());
         let outsiders = self.outsiders(&raw_outsiders, &raw_halt.reflexes);
         let executor = self.executor(&raw_executor, &drafts);
         self.schedule(&drafts);
@@ -189,9 +196,8 @@ impl<'c> Checker<'c> {
         }
         let mut layers: Vec<Layer> = drafts.into_iter().map(|d| d.layer).collect();
         layers.sort_by_key(|l| l.level);
-        let name = parts.name.map(|n| n.value).or(default.map(str::to_string));
         Some(Creature {
-            name: name?,
+            name: parts.name?.value,
             seed: parts.seed.map_or(0, |s| s.value),
             body,
             layers,
@@ -199,6 +205,7 @@ impl<'c> Checker<'c> {
                 reflexes,
                 hold: raw_halt.hold.map_or(Span::millis(500), |h| h.value),
                 stale: raw_halt.stale.map_or(Span::millis(200), |s| s.value),
+                watchdog_device,
             },
             outsiders,
             executor,
@@ -207,10 +214,10 @@ impl<'c> Checker<'c> {
 
     /// What the file as a whole must have and must not have.
     fn shape(&mut self, parts: &Parts<'_, '_>) {
-        if parts.layers.is_empty() && !self.findings.has_lost() {
+        if parts.layers.is_empty() && !self.findings.has_lost_lines() {
             let help = "add a [[layer]] with name, level and period";
             self.findings
-                .refuse(Rule::NoLayer, 0..0, "there is no layer", help);
+                .refuse(Rule::NoLayer, self.at.clone(), "there is no layer", help);
         }
         if let Some(first_too_many) = parts.layers.get(FILE_LAYERS_MAX) {
             let message = format!("there are {} layers", parts.layers.len());

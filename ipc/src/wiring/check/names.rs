@@ -65,7 +65,7 @@ impl Checker<'_> {
     }
 
     fn settings(&mut self, mut keys: Keys<'_, '_>, declaration: &'static Declaration) -> Vec<Setting> {
-        let f = &mut *self.findings;
+        let f = &mut self.findings;
         let mut settings = Vec::new();
         for parameter in declaration.parameters {
             let given = match parameter.takes.default() {

@@ -3,7 +3,7 @@
 //! Must never be the only judge: the daemon asks [`policy`](crate::wiring::policy) again when the layer comes.
 
 use super::{Checker, Draft};
-use crate::wiring::creature::How;
+use crate::wiring::creature::{BODY, How, PortName};
 use crate::wiring::directory::Directory;
 use crate::wiring::policy::{self, Claim, ClaimedTap, Part};
 use crate::wiring::read::Parts;
@@ -46,6 +46,16 @@ impl Checker<'_> {
         for draft in drafts {
             let own = |module: &str| self.modules.contains_key(module);
             // What is not there at all was complained of.
+            // Nor do sensors have to be closed to taps one by one.
+            let there = |how: How, to: &PortName| {
+                let whole = to.to_string();
+                let ports = if how == How::Suppress {
+                    &host.inputs
+                } else {
+                    &host.outputs
+                };
+                (to.module != BODY || how == How::Suppress) && ports.iter().any(|p| p.name == whole)
+            };
             let outside: Vec<_> = draft
                 .raw
                 .wires
@@ -59,7 +69,7 @@ impl Checker<'_> {
                 .taps
                 .iter()
                 .filter_map(|t| Some((t.how, t.to.as_ref()?, t.time_constant.as_ref()?)))
-                .filter(|(_, to, _)| !own(&to.value.module))
+                .filter(|(how, to, _)| !own(&to.value.module) && there(*how, &to.value))
                 .collect();
             let claim = Claim {
                 layer: &draft.layer.name,

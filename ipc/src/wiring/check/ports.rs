@@ -120,7 +120,7 @@ impl Checker<'_> {
             }
         }
         // Where a line could not be read, the module may stand in that line.
-        if self.findings.has_lost() {
+        if self.findings.has_lost_lines() {
             return None;
         }
         if module == BODY && self.host.is_none() {

@@ -48,7 +48,7 @@ impl Checker<'_> {
     /// A module none of whose inputs anything can reach will never do anything.
     pub(super) fn reached(&mut self, drafts: &[Draft<'_, '_>], open: &[PortName]) {
         // A wire or a tap that could not be read may be the missing one.
-        if self.findings.has_lost() {
+        if self.findings.has_lost_wires() {
             return;
         }
         let modules: Vec<_> = drafts.iter().flat_map(|d| &d.layer.modules).collect();

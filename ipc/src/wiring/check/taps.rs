@@ -111,7 +111,10 @@ impl Checker<'_> {
 
     pub(super) fn halt_channel(&mut self, to: &Placed<PortName>) {
         let message = format!("{} is part of the halt channel", to.value);
-        let help = "nothing taps the halt channel: remove this tap, or take the output out of [halt] reflex";
+        let help = match self.host {
+            None => "nothing taps the halt channel: remove this tap, or take the output out of [halt] reflex",
+            Some(_) => "nothing taps the halt channel: remove this tap",
+        };
         self.findings
             .refuse(Rule::HaltChannel, to.at.clone(), message, help);
     }

@@ -65,16 +65,18 @@ impl Checker<'_> {
 
     fn one_writer(&mut self, from: &Placed<PortName>, to: &Placed<PortName>) {
         let Some(first) = self.writers.get(&to.value) else {
-            self.writers.insert(to.value.clone(), from.clone());
+            self.writers
+                .insert(to.value.clone(), (from.clone(), to.at.clone()));
             return;
         };
+        let (first, input_at) = first;
         let also = (first.at.clone(), "first writer".into());
         if first.value == from.value {
             let message = format!("the wire {} -> {} stands here twice", from.value, to.value);
-            let also = (also.0, "first here".into());
+            let also = (input_at.clone(), "first here".into());
             let help = "remove one of the two";
             self.findings
-                .refuse_both(Rule::DuplicateEntry, from.at.clone(), message, help, also);
+                .refuse_both(Rule::DuplicateEntry, to.at.clone(), message, help, also);
             return;
         }
         let message = format!("{} is written by {} already", to.value, first.value);

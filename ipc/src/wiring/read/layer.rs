@@ -19,7 +19,7 @@ pub(super) fn layer<'t, 's>(
     findings: &mut Findings,
 ) -> Option<RawLayer<'t, 's>> {
     let Some(mut table) = Taking::table(value, &grammar::LAYER, findings) else {
-        findings.lose();
+        findings.lose_lines();
         return None;
     };
     let mut layer = RawLayer {
@@ -69,7 +69,7 @@ fn modules<'t, 's>(value: &'t Spanned<DeValue<'s>>, findings: &mut Findings) -> 
             "the layer's modules by name, such as sonar = { kind = \"...\" }",
             findings,
         );
-        findings.lose();
+        findings.lose_lines();
         return Vec::new();
     };
     let mut modules = Vec::new();
@@ -100,7 +100,7 @@ fn taps(list: Option<&Spanned<DeValue<'_>>>, how: How, into: &mut Vec<RawTap>, f
         format!("a list of taps such as [{{ from = \"...\", {port} = \"...\", time_constant = \"1s\" }}]");
     for item in doc::array(list, &form, findings) {
         let Some(mut table) = Taking::table(item, grammar, findings) else {
-            findings.lose();
+            findings.lose_wire();
             continue;
         };
         into.push(RawTap {

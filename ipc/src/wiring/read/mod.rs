@@ -9,7 +9,7 @@ mod taking;
 use std::ops::Range;
 
 use toml::Spanned;
-use toml::de::{DeTable, DeValue};
+use toml::de::DeValue;
 
 use super::creature::{Account, How, Overrun, PortName};
 use super::diagnostic::Findings;
@@ -44,6 +44,7 @@ pub(super) struct RawHalt {
     pub(super) reflexes: Vec<Placed<PortName>>,
     pub(super) hold: Option<Placed<Span>>,
     pub(super) stale: Option<Placed<Span>>,
+    pub(super) watchdog_device: Option<Placed<String>>,
 }
 
 #[derive(Default)]
@@ -100,14 +101,8 @@ pub(super) struct RawTap {
     pub(super) time_constant: Option<Placed<Span>>,
 }
 
-/// The parts of the file or, if it is `inline`, of a table within another file, whose name may be left out.
-pub(super) fn read<'t, 's>(
-    root: &'t DeTable<'s>,
-    at: Range<usize>,
-    inline: bool,
-    findings: &mut Findings,
-) -> Parts<'t, 's> {
-    let keys = Keys::new(root, at, grammar::FILE.what);
+/// The parts of the file or, if it is `inline`, of a table within another file, which may go without a name.
+pub(super) fn read<'t, 's>(keys: Keys<'t, 's>, inline: bool, findings: &mut Findings) -> Parts<'t, 's> {
     let nameless = inline && !keys.has("creature");
     let mut file = Taking::new(keys, &grammar::FILE, findings);
     let mut parts = Parts {
@@ -121,7 +116,19 @@ pub(super) fn read<'t, 's>(
     };
     parts.body = file.raw("body").and_then(|v| body(v, file.findings));
     if let Some(layers) = file.raw("layer") {
-        for value in doc::array(layers, "layers, each as a [[layer]] table", file.findings) {
+        if layers.get_ref().is_table() {
+            file.findings.lose_lines();
+            let help = "expected a list of layers: write [[layer]], with two brackets";
+            file.findings
+                .refuse(Rule::WrongType, layers.span(), "[layer] is a single table", help);
+        } else if !layers.get_ref().is_array() {
+            file.findings.lose_lines();
+        }
+        let items = match layers.get_ref().is_table() {
+            true => Vec::new(),
+            false => doc::array(layers, "layers, each as a [[layer]] table", file.findings),
+        };
+        for value in items {
             parts.layers.extend(layer::layer(value, file.findings));
         }
     }
@@ -151,6 +158,10 @@ fn halt(value: &Spanned<DeValue<'_>>, findings: &mut Findings) -> Option<RawHalt
         reflexes: table.ports("reflex"),
         hold: table.time("hold"),
         stale: table.time("stale"),
+        watchdog_device: table.text(
+            "watchdog_device",
+            "the path of a watchdog device such as \"/dev/watchdog\"",
+        ),
     };
     table.finish();
     Some(halt)

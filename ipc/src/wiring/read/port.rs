@@ -49,20 +49,20 @@ pub(super) fn wire(
     findings: &mut Findings,
 ) -> Vec<(Placed<PortName>, Placed<PortName>)> {
     let Some(given) = doc::text(value, "a wire such as \"sonar.map -> collide.map\"", findings) else {
-        findings.lose();
+        findings.lose_wire();
         return Vec::new();
     };
     let Some((from, to)) = given.value.split_once("->") else {
         let message = format!("{:?} has no arrow", given.value);
         findings.refuse(Rule::BadWire, given.at, message, WIRE);
-        findings.lose();
+        findings.lose_wire();
         return Vec::new();
     };
     if to.contains("->") {
         let message = format!("{:?} has two arrows", given.value);
         let help = "expected one arrow: write a wire of its own for each output";
         findings.refuse(Rule::BadWire, given.at, message, help);
-        findings.lose();
+        findings.lose_wire();
         return Vec::new();
     }
     let from = part(from, &given, WIRE, findings);
@@ -114,7 +114,7 @@ fn part(part: &str, whole: &Placed<String>, form: &str, findings: &mut Findings)
                 format!("{part:?} is not a port")
             };
             findings.refuse(Rule::BadPort, at, message, form);
-            findings.lose();
+            findings.lose_wire();
             None
         }
     }

@@ -10,6 +10,7 @@ use crate::wiring::creature::PortName;
 use crate::wiring::diagnostic::Findings;
 use crate::wiring::document::{self as doc, Keys, Placed};
 use crate::wiring::grammar::{Grammar, Key, Value};
+use crate::wiring::rule::Rule;
 
 use super::port;
 
@@ -48,11 +49,13 @@ impl<'t, 's, 'f> Taking<'t, 's, 'f> {
             .unwrap_or_else(|| panic!("{} has no key {name:?} in its grammar", self.grammar.what));
         self.taken.push(key.name);
         // Where a line could not be read, a key may be missing for that reason.
-        let value = if key.needed && !self.findings.has_lost() {
-            self.keys.need(key.name, self.findings)
-        } else {
-            self.keys.take(key.name)
-        };
+        let value = self.keys.take(key.name);
+        if value.is_none() && key.needed && !self.findings.has_lost_lines() {
+            let message = format!("{} has no {:?}", self.keys.what(), key.name);
+            let help = format!("add {} = {}: {}", key.name, key.takes.example(), key.about);
+            self.findings
+                .refuse(Rule::MissingKey, self.keys.at(), message, help);
+        }
         (key, value)
     }
 
@@ -139,6 +142,10 @@ impl<'t, 's, 'f> Taking<'t, 's, 'f> {
     /// Notes every key that the grammar does not have.
     pub(super) fn finish(self) {
         self.assert_whole();
+        // A wire may stand under a misspelt key.
+        if self.keys.has_others() {
+            self.findings.lose_wire();
+        }
         self.keys.finish(self.findings);
     }
 

@@ -216,11 +216,12 @@ impl Collide {
         // Braking takes the robot half as far as it would have gone.
         let way = speed * (self.latency.seconds() + speed / self.braking / 2.0);
         let meet = self.radius + PERSON_M + self.margin;
+        let (cos, sin) = (libm::cos(pose.heading), libm::sin(pose.heading));
         marks.iter().flatten().any(|mark| {
             let walked = self.walked(now.since(mark.at).seconds() + stop, mark.resting);
             let reaches = |spot: &Spot| {
-                let seen = spot.seen_from(pose);
-                to_front(seen.x - way, seen.y, meet) < walked
+                let (dx, dy) = (spot.x - pose.x, spot.y - pose.y);
+                to_front(dx * cos + dy * sin - way, dy * cos - dx * sin, meet) < walked
             };
             mark.arc.iter().any(reaches)
         })

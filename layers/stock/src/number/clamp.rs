@@ -8,14 +8,14 @@ use afsm::ModuleKind;
 use ipc::message::Kind;
 use ipc::wiring::{Declaration, Parameter};
 
-use crate::declare::{input, needed, out};
+use crate::declare::{input, number, out};
 use crate::single::Single;
 
 const ABOUT: &str = "keeps a number between two bounds";
 const DIAGRAM: &str = "out := smaller of high and (larger of low and in), when in arrives";
 const PARAMETERS: &[Parameter] = &[
-    needed("low", "[in]", "smallest that comes out"),
-    needed("high", "[in]", "largest that comes out"),
+    number("low", -1.0, "[in]", "smallest that comes out"),
+    number("high", 1.0, "[in]", "largest that comes out"),
 ];
 
 /// The kinds of this file.
