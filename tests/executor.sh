@@ -48,7 +48,7 @@ up chrt -f 10 "$bin/subsumed" --creature "$work/plain.toml"
 [ "$(thread motor | cut -d' ' -f1,2)" = "1 80" ] || fail "motor must be SCHED_FIFO 80, is $(thread motor)"
 for t in /proc/$daemon/task/*; do
   name=$(cat "$t/comm")
-  case $name in avoid|motor) ;; *)
+  case $name in avoid|motor|watchdog) ;; *)
     [ "$(awk '{sub(/.*\) /, ""); print $39}' "$t/stat")" = 0 ] || fail "helper thread $name inherited a real-time policy" ;;
   esac
   [ "$name" = avoid ] && [ "$(cat "/proc/$daemon/task/${t##*/}/timerslack_ns" 2>/dev/null || echo 1)" -gt 1 ] && fail "timer slack of $name is not set"
