@@ -235,3 +235,60 @@ pub(super) fn sweep(taps: &mut Vec<Joined>, now: Time, mut gone: impl FnMut(TapE
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::message::Kind;
+    use crate::wire::Page;
+
+    fn end(level: u8, room: Room) -> TapEnd {
+        let page = Page::in_memory(1);
+        TapEnd {
+            reader: page.reader(0, Kind::Number).expect("there"),
+            time_constant: Span::millis(1),
+            level,
+            plug: u32::from(level),
+            gauge: Arc::default(),
+            room,
+        }
+    }
+
+    #[test]
+    fn a_tap_with_room_is_joined_without_a_new_allocation() {
+        let mut taps = Vec::new();
+        join(&mut taps, end(3, Room::none())).expect("room for the file's own");
+        let room = Room::full();
+        let (place, size) = (room.0.as_ptr(), room.0.capacity());
+        join(&mut taps, end(1, room)).expect("room came along");
+        assert_eq!(
+            (taps.as_ptr(), taps.capacity()),
+            (place, size),
+            "moved into the room"
+        );
+        // The next ones need none of theirs, and give it back untouched.
+        for level in [2, 5, 4] {
+            join(&mut taps, end(level, Room::full())).expect("room is there");
+            assert_eq!(taps.as_ptr(), place);
+        }
+        let levels: Vec<u8> = taps.iter().map(|t| t.end.level).collect();
+        assert_eq!(levels, [1, 2, 3, 4, 5], "in series by level");
+        release(&mut taps, 1);
+        let mut gone = Vec::new();
+        sweep(&mut taps, Time(0), |end| gone.push(end));
+        assert_eq!(
+            (gone.len(), taps.len(), taps.as_ptr()),
+            (1, 4, place),
+            "the room stays when who brought it goes"
+        );
+    }
+
+    #[test]
+    fn there_is_an_end_to_taps() {
+        let mut taps = Vec::new();
+        for _ in 0..TAPS_MAX {
+            join(&mut taps, end(1, Room::full())).expect("within the bound");
+        }
+        assert!(join(&mut taps, end(1, Room::full())).is_err());
+    }
+}
