@@ -27,14 +27,14 @@ use ipc::clock::{self, Span, Time};
 use ipc::control::{Connection, Peer, Versions, run_dir};
 use ipc::wire::Page;
 use ipc::wire::iceoryx::{Domain, OwnedPage};
-use ipc::wiring::creature::Overrun;
+use ipc::wiring::creature::{Overrun, Wake};
 use rtrb::{Consumer, Producer, RingBuffer};
 use serde_json::Value;
 
 use super::handover::Giver;
 use super::link::{CommandReaders, command_readers, world_cells, world_end};
 use super::{BodyKind, World, WorldEnd, turn};
-use crate::executor::{self, Beats, Plan, host};
+use crate::executor::{self, Beats, Plan, Schedule, host};
 use crate::gate::Causes;
 use crate::segment;
 
@@ -215,13 +215,14 @@ fn start(turning: Turning, period: Span, stop: Arc<AtomicBool>) -> io::Result<ex
         name: "body".into(),
         period,
         phase: Span::ZERO,
-        priority: Some(PRIORITY),
+        schedule: Schedule::Fifo(PRIORITY),
         cpu: None,
+        wake: Wake::Sleep,
         overrun: Overrun::Skip,
         sealed: false,
     };
     let begin = clock::monotonic();
-    executor::start(plan, begin, turning, Arc::default(), Arc::default(), stop)
+    executor::start(plan, begin, turning, Vec::new(), Arc::default(), stop)
 }
 
 /// Says when the gate closes and opens, until it is time to leave.
