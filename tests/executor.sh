@@ -79,7 +79,7 @@ down
 
 # Without privileges: refused to start if best effort is not wanted, marked if it is.
 if command -v capsh >/dev/null; then
-  creature strict 'best_effort = false' ''
+  creature strict 'best_effort = "refuse"' ''
   chmod -R a+rX "$work"
   set +e
   capsh --drop=cap_sys_nice,cap_ipc_lock,cap_sys_resource -- -c "ulimit -r 0; '$bin/subsumed' --creature '$work/strict.toml' --name outside --headless --seconds 2" >"$work/strict.log" 2>&1

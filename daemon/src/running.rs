@@ -96,7 +96,7 @@ pub struct Running {
 fn refused(refusals: &[Refusal]) -> std::io::Error {
     let lines: Vec<String> = refusals.iter().map(Refusal::to_string).collect();
     let text = format!(
-        "the host does not grant real time and [executor] best_effort is false:\n  {}",
+        "the host does not grant real time and [executor] best_effort is \"refuse\":\n  {}",
         lines.join("\n  ")
     );
     std::io::Error::new(std::io::ErrorKind::PermissionDenied, text)
