@@ -91,6 +91,7 @@ fn deadline_reserves_a_part_of_the_period_for_each() {
 }
 
 fn spinning(c: &mut Creature, layer: usize, lead: Span, cpu: Option<usize>) {
+    c.executor.spin_share_max = 0.1;
     c.layers[layer].wake = Wake::Spin(lead);
     c.layers[layer].cpu = cpu;
 }

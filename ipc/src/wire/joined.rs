@@ -256,7 +256,8 @@ mod tests {
 
     #[test]
     fn a_tap_with_room_is_joined_without_a_new_allocation() {
-        let mut taps = Vec::new();
+        // Full with one tap: the next needs room.
+        let mut taps = Vec::with_capacity(1);
         join(&mut taps, end(3, Room::none())).expect("room for the file's own");
         let room = Room::full();
         let (place, size) = (room.0.as_ptr(), room.0.capacity());
