@@ -52,8 +52,10 @@ for who in "as $stranger" member; do
     may_not "$who: removes $file" $who sh -c "rm -f '$file' && [ ! -e '$file' ]"
   done
 done
-status=$(ctl status)
-grep -q '^halt: \(no\|reflex\)' <<<"$status" || fail "the creature must be unharmed"
+# Without real time a busy host may make a layer late; what nobody else may have done is halt or cut anything.
+if ctl events | grep -E 'emergency stop|reset|cut short|died|policy breach' >"$work/try.log"; then
+  fail "the creature must be unharmed"
+fi
 if command -v curl >/dev/null; then
   page=$(sed -n 's#.*\(http://127.0.0.1:[0-9]*\)/.*#\1#p' "$work/daemon.out" | head -1)
   may "another user looks at the page" as $stranger curl -fsS "$page/api/state"
