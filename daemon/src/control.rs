@@ -105,7 +105,7 @@ impl Drop for Control {
         // Their threads hold what the daemon wants to take apart.
         self.callers.send_away();
         for _ in 0..100 {
-            if self.callers.len() == 0 {
+            if self.callers.is_empty() {
                 break;
             }
             std::thread::sleep(Duration::from_millis(10));

@@ -330,3 +330,7 @@ mod tests {
         assert!(NAMES.iter().enumerate().all(|(i, (cause, _))| cause.0 == 1 << i));
     }
 }
+
+#[cfg(test)]
+#[path = "gate_every_case.rs"]
+mod every_case;

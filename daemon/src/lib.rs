@@ -21,6 +21,7 @@ pub mod policy;
 pub mod running;
 pub mod segment;
 pub mod status;
+pub mod threads;
 pub mod view;
 pub mod virtual_run;
 pub mod watchdog;

@@ -10,6 +10,7 @@ use std::time::{Duration, Instant};
 use clap::Parser;
 use daemon::admission::Admission;
 use daemon::control::{self, Control};
+use daemon::executor::host;
 use daemon::feeder::Fed;
 use daemon::machine::{Machine, cells_apart, kinds};
 use daemon::running::{self, Running};
@@ -123,6 +124,8 @@ fn run(options: &Options, creature: Creature) -> Result<(), String> {
     for signal in [signal_hook::consts::SIGTERM, signal_hook::consts::SIGINT] {
         signal_hook::flag::register(signal, leave.clone()).map_err(|e| format!("signal {signal}: {e}"))?;
     }
+    // Before any thread is made: none may inherit a real-time policy. What is refused here is said later.
+    let _ = host::be_ordinary();
     let name = creature.name.clone();
     control::claim(&name).map_err(|e| e.to_string())?;
     segment::guard().map_err(|e| format!("a handler for SIGBUS: {e}"))?;

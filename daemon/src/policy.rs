@@ -9,7 +9,7 @@ use afsm::layer::Command;
 use ipc::clock::Span;
 use ipc::control::{Plug, PlugTap};
 use ipc::message::Kind;
-use ipc::wire::{Page, Reader, TapEnd, TapGauge};
+use ipc::wire::{Page, Reader, Room, TapEnd, TapGauge};
 use ipc::wiring::creature::{Creature, How, Outsiders};
 use ipc::wiring::directory::Directory;
 use ipc::wiring::policy::{self, Claim, ClaimedTap};
@@ -117,6 +117,7 @@ impl Policy {
             level: plug.level,
             plug: number,
             gauge: gauge.clone(),
+            room: Room::full(),
         };
         let (places, command): (_, fn(usize, TapEnd) -> Command) = match tap.how {
             How::Suppress => (&self.inputs, Command::Suppress),

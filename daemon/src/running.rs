@@ -11,10 +11,9 @@ use std::sync::{Arc, Mutex};
 use std::thread::JoinHandle;
 use std::time::Duration;
 
-use afsm::layer::RunningLayer;
 use ipc::clock::{self, Span, Time};
 use ipc::wire::iceoryx::{Domain, OwnedPage};
-use ipc::wiring::creature::{Creature, Overrun, PRIORITY_MAX, rate_monotonic};
+use ipc::wiring::creature::Creature;
 use ipc::wiring::directory::{Directory, output_ports};
 use serde_json::{Value, json};
 
@@ -22,20 +21,14 @@ use crate::alloc;
 use crate::body::remote::{self, Remote};
 use crate::body::{self, World, WorldEnd};
 use crate::events::Events;
-use crate::executor::gauge::BeatGauge;
-use crate::executor::{self, Beating, Beats, Plan, host, host::Refusal};
+use crate::executor::{Beating, Refusal, host, plan};
 use crate::feeder::{self, Fed};
 use crate::gate::Causes;
 use crate::halt::{CauseCount, HaltChannel};
-use crate::machine::{Apart, Embodied, Machine, Station};
-use crate::motor::Motor;
+use crate::machine::{Apart, Embodied, Machine};
 use crate::plugs::Plugs;
 use crate::status::{self, Rates, Record, Watched, WatchedTap};
-use crate::watchdog::Watchdog;
-
-/// Priority of the watchdog: above every layer whatever its file says (at most 97), below the kernel's own
-/// threads at 99.
-const PRIORITY_WATCHDOG: u8 = 98;
+use crate::threads::{Crew, Start};
 
 /// What the threads of the daemon share, none of them real-time.
 pub struct Shared {
@@ -91,36 +84,22 @@ pub struct Running {
     pub shared: Arc<Shared>,
     /// What the host refused; empty in real time.
     pub refusals: Vec<Refusal>,
+    /// What was measured of every layer and the motor unit.
+    pub records: Arc<Mutex<Vec<Record>>>,
     beating: Vec<Beating>,
     helpers: Vec<JoinHandle<()>>,
     stop: Arc<AtomicBool>,
     leave: Arc<AtomicBool>,
 }
 
-struct LayerBeats(RunningLayer);
-
-impl Beats for LayerBeats {
-    fn beat(&mut self, now: Time) {
-        self.0.step(now);
-        self.0.commit(clock::monotonic());
-    }
-}
-
-struct WatchdogBeats(Watchdog);
-
-impl Beats for WatchdogBeats {
-    fn beat(&mut self, now: Time) {
-        self.0.look(now);
-    }
-}
-
-struct MotorBeats(Motor);
-
-impl Beats for MotorBeats {
-    fn beat(&mut self, now: Time) {
-        self.0.gather(now);
-        self.0.act(clock::monotonic());
-    }
+/// Why a creature that does not run in best effort does not run here.
+fn refused(refusals: &[Refusal]) -> std::io::Error {
+    let lines: Vec<String> = refusals.iter().map(Refusal::to_string).collect();
+    let text = format!(
+        "the host does not grant real time and [executor] best_effort is \"refuse\":\n  {}",
+        lines.join("\n  ")
+    );
+    std::io::Error::new(std::io::ErrorKind::PermissionDenied, text)
 }
 
 /// Starts `machine`, whose wires are in `owned`, as `name`. `body` is the name of the process that runs its
@@ -162,22 +141,27 @@ pub fn start(
         floor: Mutex::new(floor),
         status: Mutex::new(Arc::new(json!({}))),
     });
-    let leave = Arc::new(AtomicBool::new(false));
-    let mut threads = Threads {
-        halt: halt.clone(),
-        stop: Arc::new(AtomicBool::new(false)),
+    let (stop, leave) = (Arc::new(AtomicBool::new(false)), Arc::new(AtomicBool::new(false)));
+    let planned = plan::threads(&creature).map_err(|faults| {
+        let text = faults.join("; ");
+        std::io::Error::new(std::io::ErrorKind::InvalidInput, text)
+    })?;
+    let mut crew = Crew::new(Start {
         begin: clock::monotonic() + START_WAIT,
-        beating: Vec::new(),
-        records: Vec::new(),
-        refusals: host::lock_memory().err().into_iter().collect(),
-    };
+        halt: halt.clone(),
+        stop: stop.clone(),
+        policy: creature.executor.policy,
+        threads: planned.len(),
+    });
+    crew.refusals.extend(host::be_ordinary().err());
+    crew.refusals.extend(host::lock_memory().err());
     host::limit_runaway();
-    threads.layers(stations)?;
+    crew.start_layers(planned, stations)?;
     let mut helpers = Vec::new();
     let view = Arc::new(Mutex::new(json!({})));
     let progress = watchdog.progress.clone();
     if let Some(spec) = &creature.body {
-        threads.watchdog(watchdog, spec.period)?;
+        crew.start_watchdog(watchdog, spec.period)?;
     }
     if let Some(Embodied {
         motor,
@@ -187,7 +171,7 @@ pub fn start(
     }) = embodied
     {
         let period = motor.period();
-        threads.motor(motor, gauge)?;
+        crew.start_motor(motor, gauge)?;
         helpers.push(live(world, link, period, view.clone(), leave.clone())?);
     }
     if let (Some(apart), Some(spec), Some(body)) = (apart, &creature.body, body) {
@@ -197,7 +181,7 @@ pub fn start(
             giver,
             first,
         } = apart;
-        threads.motor(motor, gauge)?;
+        crew.start_motor(motor, gauge)?;
         let remote = Remote {
             name: body.into(),
             declaration: spec.declaration,
@@ -206,13 +190,19 @@ pub fn start(
         };
         helpers.push(remote::keep(remote, shared.clone(), view.clone(), leave.clone())?);
     }
-    let Threads {
-        stop,
+    let Crew {
         beating,
         records,
         mut refusals,
         ..
-    } = threads;
+    } = crew;
+    if !creature.executor.best_effort && !refusals.is_empty() {
+        stop.store(true, Ordering::Relaxed);
+        leave.store(true, Ordering::Relaxed);
+        beating.into_iter().for_each(Beating::join);
+        helpers.into_iter().for_each(|helper| drop(helper.join()));
+        return Err(refused(&refusals));
+    }
     if creature.body.is_some() {
         helpers.push(feeder::feed(fed, progress, shared.clone(), leave.clone())?);
     }
@@ -241,6 +231,7 @@ pub fn start(
             .clone(),
         gauge: filed.gauge.clone(),
     });
+    let records = Arc::new(Mutex::new(records));
     let watcher = Watcher {
         shared: shared.clone(),
         began,
@@ -252,7 +243,7 @@ pub fn start(
         notes: refusals.iter().map(Refusal::to_string).collect(),
         taps: watched_taps.collect(),
         wires: net,
-        records,
+        records: records.clone(),
         view,
         rates: Rates::default(),
         causes: Causes::NONE,
@@ -262,91 +253,12 @@ pub fn start(
     Ok(Running {
         shared,
         refusals,
+        records,
         beating,
         helpers,
         stop,
         leave,
     })
-}
-
-/// The real-time threads as they are started.
-struct Threads {
-    halt: Arc<HaltChannel>,
-    stop: Arc<AtomicBool>,
-    begin: Time,
-    beating: Vec<Beating>,
-    records: Vec<Record>,
-    refusals: Vec<Refusal>,
-}
-
-impl Threads {
-    fn layers(&mut self, stations: Vec<Station>) -> std::io::Result<()> {
-        let mut periods: Vec<Span> = stations.iter().map(|s| s.spec.period).collect();
-        periods.sort();
-        periods.dedup();
-        for station in stations {
-            let spec = station.spec;
-            let monotonic = rate_monotonic(&periods, spec.period);
-            let plan = Plan {
-                name: spec.name,
-                period: spec.period,
-                phase: spec.phase,
-                priority: Some(spec.priority.unwrap_or(monotonic)),
-                cpu: spec.cpu,
-                overrun: spec.overrun,
-                sealed: true,
-            };
-            self.beat(plan, Some(spec.level), LayerBeats(station.running), station.gauge)?;
-        }
-        Ok(())
-    }
-
-    fn motor(&mut self, motor: Motor, gauge: Arc<BeatGauge>) -> std::io::Result<()> {
-        let plan = own_plan("motor", motor.period(), PRIORITY_MAX);
-        self.beat(plan, None, MotorBeats(motor), gauge)
-    }
-
-    fn watchdog(&mut self, watchdog: Watchdog, period: Span) -> std::io::Result<()> {
-        let gauge = self.halt.watchdog.clone();
-        let plan = own_plan("watchdog", period, PRIORITY_WATCHDOG);
-        self.beat(plan, None, WatchdogBeats(watchdog), gauge)
-    }
-
-    fn beat(
-        &mut self,
-        plan: Plan,
-        level: Option<u8>,
-        beats: impl Beats,
-        gauge: Arc<BeatGauge>,
-    ) -> std::io::Result<()> {
-        let (name, period) = (plan.name.clone(), plan.period);
-        let (halt, stop) = (self.halt.clone(), self.stop.clone());
-        let mut thread = executor::start(plan, self.begin, beats, gauge.clone(), halt, stop)?;
-        for refusal in std::mem::take(&mut thread.refusals) {
-            if !self.refusals.iter().any(|r| r.grants == refusal.grants) {
-                self.refusals.push(refusal);
-            }
-        }
-        let (_, empty) = rtrb::RingBuffer::new(1);
-        let samples = std::mem::replace(&mut thread.samples, empty);
-        self.records
-            .push(Record::new(&name, level, period, gauge, samples));
-        self.beating.push(thread);
-        Ok(())
-    }
-}
-
-/// The plan of a thread that belongs to no layer.
-fn own_plan(name: &str, period: Span, priority: u8) -> Plan {
-    Plan {
-        name: name.into(),
-        period,
-        phase: Span::ZERO,
-        priority: Some(priority),
-        cpu: None,
-        overrun: Overrun::Skip,
-        sealed: true,
-    }
 }
 
 impl Running {
@@ -442,7 +354,7 @@ struct Watcher {
     notes: Vec<String>,
     wires: Vec<Watched>,
     taps: Vec<WatchedTap>,
-    records: Vec<Record>,
+    records: Arc<Mutex<Vec<Record>>>,
     view: Arc<Mutex<Value>>,
     rates: Rates,
     causes: Causes,
@@ -461,14 +373,13 @@ impl Watcher {
 
     fn look(&mut self) {
         let now = clock::monotonic();
-        for record in &mut self.records {
-            let new = record.drain();
-            if new > 0 {
-                let text = format!(
-                    "{} ran over its period {new} times (of {} beats)",
-                    record.name,
-                    record.gauge.counts().beats
-                );
+        for record in self
+            .records
+            .lock()
+            .expect("nobody panics holding the records")
+            .iter_mut()
+        {
+            if let Some(text) = record.drain() {
                 self.shared.events.note("overrun", Some(&record.name), text);
             }
         }
@@ -531,7 +442,7 @@ impl Watcher {
             .map(|w| status::wire(w, &mut self.rates, now))
             .collect();
         let mut taps: Vec<Value> = self.taps.iter().map(|t| status::tap(t, now)).collect();
-        let mut layers = status::layers(&self.records);
+        let mut layers = status::layers(&self.records.lock().expect("nobody panics holding the records"));
         for a in &attached {
             layers.push(status::attached(a));
             for (index, output) in a.plug.outputs.iter().enumerate() {

@@ -22,7 +22,7 @@ fn systemd_hears_ready_meals_while_all_beat_and_stopping() {
     let stage = Stage::new("systemd");
     let path = stage.run.join("notify");
     let socket = UnixDatagram::bind(&path).expect("a socket for the test");
-    let mut heard = |wait: Duration| {
+    let heard = |wait: Duration| {
         socket
             .set_read_timeout(Some(wait))
             .expect("a socket takes a time-out");

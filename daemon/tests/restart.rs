@@ -62,7 +62,9 @@ fn two_daemons_side_by_side_have_wires_of_their_own() {
     // A halt of one is none of the other's business, nor is its death.
     assert_eq!(stage.ask("tom", &Request::Halt), Some(Reply::Done));
     wait_for("tom is halted", || stage.causes("tom") == ["emergency stop"]);
-    assert!(stage.is_free("jerry"));
+    // On a busy host a late beat may halt it for a moment, but not for tom's reason.
+    assert!(!stage.causes("jerry").iter().any(|c| c == "emergency stop"));
+    wait_for("jerry may move", || stage.is_free("jerry"));
     tom.kill();
     let messages = || {
         stage.status("jerry")["wires"][1]["messages"]
@@ -71,7 +73,7 @@ fn two_daemons_side_by_side_have_wires_of_their_own() {
     };
     let first = messages();
     wait_for("jerry's wires go on", || messages() > first + 10);
-    assert!(stage.is_free("jerry"));
+    wait_for("jerry may move, with tom dead", || stage.is_free("jerry"));
     let mut third = stage.start(env!("CARGO_BIN_EXE_subsumed"), &["--name", "jerry", "--headless"]);
     assert_eq!(
         third.end().code(),

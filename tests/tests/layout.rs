@@ -9,8 +9,6 @@ use std::path::{Path, PathBuf};
 const LINES_MAX: usize = 420;
 
 /// Files that are longer and are to be divided; each must still be too long, or it leaves this list.
-
-/// Files that are longer and are to be divided; each must still be too long, or it leaves this list.
 const OVERLONG: [&str; 1] = ["daemon/src/running.rs"];
 
 /// Longest README of a crate, in lines: one page.
@@ -111,6 +109,9 @@ fn every_file_has_a_title_and_one_idea() {
 #[test]
 fn every_crate_has_a_page_that_says_what_it_is() {
     for (path, text) in files("Cargo.toml") {
+        if path.starts_with("tools/templates/") {
+            continue; // no crate yet: `subsumectl new layer` makes one of it
+        }
         let folder = Path::new(&path).parent().expect("a file lies in a folder");
         let name = folder.file_name().and_then(|n| n.to_str()).unwrap_or_default();
         assert!(

@@ -97,7 +97,7 @@ fn write(path: &Path, text: &str) -> bool {
 fn order(asked: &Asked) -> Result<Order, Vec<String>> {
     let mut wrong = Vec::new();
     if asked.creature != "allen" {
-        let help = one_of("creature", &asked.creature, ["allen"].into_iter());
+        let help = one_of("creature", &asked.creature, ["allen"]);
         wrong.push(format!("no table is known for {:?}; {help}", asked.creature));
     }
     if !(0.01..=1000.0).contains(&asked.hours) {

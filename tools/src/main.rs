@@ -2,6 +2,7 @@
 
 mod check;
 mod compete;
+mod doctor;
 mod example;
 mod live;
 mod modules;
@@ -98,6 +99,12 @@ enum Command {
     Truckin(truckin::command::TruckinArgs),
     /// ADROIT: check, draw, run and change programs of releasing mechanisms
     Adroit(adroit::command::AdroitArgs),
+    /// Measures wake-ups, steps, period errors and ages under a load, alone or against cyclictest
+    Latency(latency::command::LatencyArgs),
+    /// What a beat costs as a creature grows: time, share of a processor, memory
+    Scale(latency::scale::ScaleArgs),
+    /// Whether this host can keep a period, and what to change where it can't
+    Doctor(doctor::DoctorArgs),
     /// Draws a creature: layers stacked, wires, taps with their time constants; what is wrong in red
     Graph {
         /// The creature file, and manifests of layers that join it
@@ -150,7 +157,14 @@ enum Command {
     },
 }
 
+/// Counts what real-time threads allocate where this program has some (`latency`).
+#[global_allocator]
+static ALLOCATOR: daemon::alloc::Counting = daemon::alloc::Counting;
+
 fn main() -> ExitCode {
+    if let Some(status) = latency::workers::dispatch() {
+        return status;
+    }
     // A reader that leaves early, such as `head`, ends this program without a complaint.
     let gone = std::sync::Arc::new(std::sync::atomic::AtomicBool::new(true));
     let _ = signal_hook::flag::register_conditional_default(signal_hook::consts::SIGPIPE, gone);
@@ -187,6 +201,9 @@ fn main() -> ExitCode {
         Command::Compete(asked) => return compete::compete(&asked, json),
         Command::Truckin(args) => return truckin::command::command(args),
         Command::Adroit(args) => return adroit::command::command(args),
+        Command::Latency(args) => return latency::command::command(&args, json),
+        Command::Scale(args) => return latency::scale::command(&args, json),
+        Command::Doctor(args) => return doctor::doctor(&args, json),
         Command::Graph {
             mut files,
             layers,

@@ -152,6 +152,7 @@ fn layer(name: &str, host: Option<&Path>, crates: Option<&Path>) -> Result<Vec<P
             creature.name
         ));
     }
+    let speech = joint.speech;
     let words: &[(&str, &str)] = &[
         ("@NAME@", name),
         ("@MODULE@", &module),
@@ -161,6 +162,16 @@ fn layer(name: &str, host: Option<&Path>, crates: Option<&Path>) -> Result<Vec<P
         ("@FROM@", &from),
         ("@TO@", &to),
         ("@UNIT@", joint.unit),
+        ("@KIND@", speech.kind),
+        ("@TYPE@", speech.of),
+        ("@TYPES@", speech.types),
+        ("@MORE@", speech.more),
+        ("@LESS@", speech.less),
+        ("@BY@", speech.by.unwrap_or(joint.unit)),
+        ("@PUT@", speech.put),
+        ("@OVER@", speech.over),
+        ("@UNDER@", speech.under),
+        ("@MOUTH@", speech.mouth),
         ("@TAU@", &time_constant.to_string()),
         ("@AFSM@", &afsm),
         ("@IPC@", &ipc),
@@ -169,8 +180,55 @@ fn layer(name: &str, host: Option<&Path>, crates: Option<&Path>) -> Result<Vec<P
     write(name, LAYER, words)
 }
 
+/// What differs in a new layer by the type of its messages.
+struct Speech {
+    takes: Kind,
+    kind: &'static str,
+    of: &'static str,
+    types: &'static str,
+    more: &'static str,
+    less: &'static str,
+    /// Unit of the sway, if it is not the port's.
+    by: Option<&'static str>,
+    mouth: &'static str,
+    put: &'static str,
+    over: &'static str,
+    under: &'static str,
+}
+
+/// The types of message that a new layer can be made for.
+static SPEECHES: [Speech; 2] = [
+    Speech {
+        takes: Kind::Number,
+        kind: "Number",
+        of: "f64",
+        types: "Kind",
+        more: "heard + self.by",
+        less: "heard - self.by",
+        by: None,
+        mouth: "source",
+        put: "1.0",
+        over: "1.25",
+        under: "0.75",
+    },
+    Speech {
+        takes: Kind::Polar,
+        kind: "Polar",
+        of: "Polar",
+        types: "{Kind, Polar}",
+        more: "Polar { bearing: heard.bearing + self.by, ..heard }",
+        less: "Polar { bearing: heard.bearing - self.by, ..heard }",
+        by: Some("rad"),
+        mouth: "source.polar",
+        put: "[2.0, 1.0]",
+        over: "[2.0, 1.25]",
+        under: "[2.0, 0.75]",
+    },
+];
+
 /// Where a new layer joins a creature.
 struct Joint {
+    speech: &'static Speech,
     from: PortName,
     to: PortName,
     unit: &'static str,
@@ -178,7 +236,7 @@ struct Joint {
     period: Span,
 }
 
-/// The first input that is open to taps, takes a number and has a wire that outsiders may read.
+/// The first input that is open to taps, takes a number or a polar message and has a wire that outsiders may read.
 fn joint(creature: &Creature) -> Result<Joint, String> {
     let readable = |name: &PortName| match &creature.outsiders.read {
         Reads::All => true,
@@ -192,10 +250,11 @@ fn joint(creature: &Creature) -> Result<Joint, String> {
             let module = layer.modules.iter().find(|m| m.name == wire.to.module);
             let port = module.and_then(|m| m.declaration.input(&wire.to.port));
             if let Some((_, port)) = port
-                && port.kind == Kind::Number
+                && let Some(speech) = SPEECHES.iter().find(|t| t.takes == port.kind)
                 && creature.outsiders.tap.contains(&wire.to)
             {
                 return Ok(Joint {
+                    speech,
                     from: wire.from.clone(),
                     to: wire.to.clone(),
                     unit: port.unit,
@@ -206,7 +265,7 @@ fn joint(creature: &Creature) -> Result<Joint, String> {
         }
     }
     Err(format!(
-        "{} opens no input that takes a number; expected one in [outsiders] tap = [...] whose wire outsiders may read",
+        "{} opens no input that takes a number or a polar message; expected one in [outsiders] tap = [...] whose wire outsiders may read",
         creature.name
     ))
 }

@@ -49,7 +49,7 @@ fn allen_and_a_layer_that_joins_it() {
     let svg = text(&drawn.stdout);
     for part in [
         "data-wire=\"sonar.map\"",
-        "data-tap=\"avoid.heading>turn.heading\"",
+        "data-tap=\"avoid.heading&gt;turn.heading\"",
         "data-module=\"wander\"",
         "data-level=\"1\"",
         ">2 s<",

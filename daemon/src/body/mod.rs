@@ -15,6 +15,7 @@ pub mod link;
 pub mod office;
 pub mod process;
 pub mod remote;
+pub mod warehouse;
 
 use std::any::Any;
 
@@ -82,7 +83,7 @@ impl World for Nowhere {
 }
 
 /// Every kind of body built in.
-pub const BODIES: &[&BodyKind] = &[&office::KIND];
+pub const BODIES: &[&BodyKind] = &[&office::KIND, &warehouse::KIND];
 
 /// The kind called `name`.
 pub fn find(name: &str) -> Option<&'static BodyKind> {

@@ -36,6 +36,26 @@ pub struct TapEnd {
     pub plug: Plug,
     /// Where what happens at it is counted, for those who watch.
     pub gauge: Arc<TapGauge>,
+    /// Room at its port for it and those before it. A tap that is joined while its layer beats brings it along;
+    /// one that is joined when the layer is built needs none.
+    pub room: Room,
+}
+
+/// Memory for the taps of one port, made by whoever may allocate and given back with the tap that brought it.
+/// Most ports are never tapped, so they have none of their own.
+#[derive(Debug, Default)]
+pub struct Room(Vec<Joined>);
+
+impl Room {
+    /// No room: for ports of a layer that does not beat yet.
+    pub fn none() -> Room {
+        Room(Vec::new())
+    }
+
+    /// Room for as many taps as a port may have.
+    pub fn full() -> Room {
+        Room(Vec::with_capacity(TAPS_MAX))
+    }
 }
 
 /// Counters of a tap that other threads may look at.
@@ -102,18 +122,24 @@ impl Joined {
     }
 
     /// Takes in the tap's newest message if there is one that was not seen.
+    #[inline]
     pub(super) fn look(&mut self, now: Time, limits: Option<&Limits>) {
         self.fresh = false;
-        if self.leaving {
-            return;
+        if !self.leaving && self.end.reader.changed(self.seen) {
+            self.take_in(now, limits);
         }
-        let Some(reading) = self.end.reader.newer_than(self.seen) else {
+    }
+
+    /// Takes in the tap's newest message, of which there is one that was not seen.
+    fn take_in(&mut self, now: Time, limits: Option<&Limits>) {
+        let mut words = [0.0; WORDS_MAX];
+        let Some((number, stamp)) = self.end.reader.take_newer(self.seen, &mut words) else {
             return;
         };
-        self.seen = reading.number;
+        self.seen = number;
         let newest = self.window.map_or(Time::ZERO, |w| w.stamp);
-        let stamp = match plausible(reading.stamp, now) {
-            Some(stamp) if stamp >= newest && limits.is_none_or(|l| l.accept(&reading.words)) => stamp,
+        let stamp = match plausible(stamp, now) {
+            Some(stamp) if stamp >= newest && limits.is_none_or(|l| l.accept(&words)) => stamp,
             _ => {
                 count(&self.end.gauge.faults);
                 return;
@@ -123,7 +149,7 @@ impl Joined {
             stamp,
             time_constant: self.end.time_constant,
         });
-        self.words = reading.words;
+        self.words = words;
         self.fresh = true;
     }
 
@@ -144,6 +170,7 @@ impl Joined {
         }
     }
 
+    #[inline]
     pub(super) fn gone(&self, now: Time) -> bool {
         self.leaving && self.window.is_none_or(|w| now >= w.stamp + w.time_constant)
     }
@@ -160,14 +187,21 @@ pub struct TapState {
 
 /// The stamp of a message read at `now`: never later than `now` (it was written while this beat was
 /// already under way), or `None` if it lies so far ahead that its writer's clock is wrong.
+#[inline]
 pub(super) fn plausible(stamp: Time, now: Time) -> Option<Time> {
     (stamp <= now + AHEAD_MAX).then(|| stamp.min(now))
 }
 
 /// Joins `end` after taps of lower or equal level; gives it back when there is no room.
-pub(super) fn join(taps: &mut Vec<Joined>, end: TapEnd) -> Result<(), TapEnd> {
+pub(super) fn join(taps: &mut Vec<Joined>, mut end: TapEnd) -> Result<(), TapEnd> {
     if taps.len() == TAPS_MAX {
         return Err(end);
+    }
+    if taps.len() == taps.capacity() && end.room.0.capacity() > taps.len() {
+        // Moves into the room that came along; the old one leaves with the tap.
+        let mut room = std::mem::take(&mut end.room.0);
+        room.append(taps);
+        end.room.0 = std::mem::replace(taps, room);
     }
     let place = taps
         .iter()
@@ -190,6 +224,7 @@ pub(super) fn window_of(taps: &[Joined], gauge: &Arc<TapGauge>) -> Option<Window
 }
 
 /// Hands over the taps that have left and whose windows have run out.
+#[inline]
 pub(super) fn sweep(taps: &mut Vec<Joined>, now: Time, mut gone: impl FnMut(TapEnd)) {
     let mut k = 0;
     while k < taps.len() {
@@ -198,5 +233,63 @@ pub(super) fn sweep(taps: &mut Vec<Joined>, now: Time, mut gone: impl FnMut(TapE
         } else {
             k += 1;
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::message::Kind;
+    use crate::wire::Page;
+
+    fn end(level: u8, room: Room) -> TapEnd {
+        let page = Page::in_memory(1);
+        TapEnd {
+            reader: page.reader(0, Kind::Number).expect("there"),
+            time_constant: Span::millis(1),
+            level,
+            plug: u32::from(level),
+            gauge: Arc::default(),
+            room,
+        }
+    }
+
+    #[test]
+    fn a_tap_with_room_is_joined_without_a_new_allocation() {
+        // Full with one tap: the next needs room.
+        let mut taps = Vec::with_capacity(1);
+        join(&mut taps, end(3, Room::none())).expect("room for the file's own");
+        let room = Room::full();
+        let (place, size) = (room.0.as_ptr(), room.0.capacity());
+        join(&mut taps, end(1, room)).expect("room came along");
+        assert_eq!(
+            (taps.as_ptr(), taps.capacity()),
+            (place, size),
+            "moved into the room"
+        );
+        // The next ones need none of theirs, and give it back untouched.
+        for level in [2, 5, 4] {
+            join(&mut taps, end(level, Room::full())).expect("room is there");
+            assert_eq!(taps.as_ptr(), place);
+        }
+        let levels: Vec<u8> = taps.iter().map(|t| t.end.level).collect();
+        assert_eq!(levels, [1, 2, 3, 4, 5], "in series by level");
+        release(&mut taps, 1);
+        let mut gone = Vec::new();
+        sweep(&mut taps, Time(0), |end| gone.push(end));
+        assert_eq!(
+            (gone.len(), taps.len(), taps.as_ptr()),
+            (1, 4, place),
+            "the room stays when who brought it goes"
+        );
+    }
+
+    #[test]
+    fn there_is_an_end_to_taps() {
+        let mut taps = Vec::new();
+        for _ in 0..TAPS_MAX {
+            join(&mut taps, end(1, Room::full())).expect("within the bound");
+        }
+        assert!(join(&mut taps, end(1, Room::full())).is_err());
     }
 }

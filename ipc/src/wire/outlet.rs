@@ -9,10 +9,10 @@
 
 use std::sync::Arc;
 
-use super::joined::{Joined, Plug, TAPS_MAX, TapEnd, TapGauge, TapState, join, release, sweep, window_of};
+use super::joined::{Joined, Plug, TapEnd, TapGauge, TapState, join, release, sweep, window_of};
 use super::page::Writer;
 use crate::clock::Time;
-use crate::message::Words;
+use crate::message::{Payload, WORDS_MAX, Words};
 use crate::tap::{self, Window};
 
 /// What was counted at one output.
@@ -28,7 +28,10 @@ pub struct OutputCounts {
 #[derive(Debug)]
 pub struct Outlet {
     writer: Writer,
-    staged: Option<Words>,
+    /// Whether there is a message for the end of the beat.
+    staged: bool,
+    /// Its words, or those of the last one.
+    words: Words,
     taps: Vec<Joined>,
     counts: OutputCounts,
 }
@@ -38,13 +41,15 @@ impl Outlet {
     pub fn new(writer: Writer) -> Outlet {
         Outlet {
             writer,
-            staged: None,
-            taps: Vec::with_capacity(TAPS_MAX),
+            staged: false,
+            words: [0.0; WORDS_MAX],
+            taps: Vec::new(),
             counts: OutputCounts::default(),
         }
     }
 
-    /// Joins an inhibitor. Does not allocate. `Err` gives it back when [`TAPS_MAX`] stand there already.
+    /// Joins an inhibitor. Does not allocate if it brings [`Room::full`](super::Room::full). `Err` gives it back
+    /// when [`TAPS_MAX`](super::TAPS_MAX) stand there already.
     pub fn inhibit(&mut self, end: TapEnd) -> Result<(), TapEnd> {
         join(&mut self.taps, end)
     }
@@ -59,32 +64,58 @@ impl Outlet {
     /// # Panics
     /// When the module emits twice on one port in one step.
     pub fn stage(&mut self, words: Words) {
+        self.mark();
+        self.words = words;
+    }
+
+    /// Keeps the message for the end of the beat, as [`Outlet::stage`] does.
+    ///
+    /// # Panics
+    /// When the module emits twice on one port in one step.
+    #[inline]
+    pub fn emit<T: Payload>(&mut self, message: T) {
+        self.mark();
+        message.put(&mut self.words);
+    }
+
+    #[inline]
+    fn mark(&mut self) {
         assert!(
-            self.staged.is_none(),
+            !self.staged,
             "a module emits at most one message per output port per step"
         );
-        self.staged = Some(words);
+        self.staged = true;
     }
 
     /// Whether a message waits for the end of the beat.
     pub fn is_staged(&self) -> bool {
-        self.staged.is_some()
+        self.staged
     }
 
     /// Writes the staged message, stamped `u`, unless an inhibitor's window holds. Says whether it wrote.
+    #[inline]
     pub fn commit(&mut self, u: Time, gone: impl FnMut(TapEnd)) -> bool {
-        self.look(u, gone);
-        match self.staged.take() {
-            Some(words) => self.send(u, &words),
-            None => false,
+        if !self.taps.is_empty() {
+            self.look(u, gone);
         }
+        if !std::mem::take(&mut self.staged) || !self.open(u) {
+            return false;
+        }
+        self.writer.write(u, &self.words);
+        self.counts.emitted += 1;
+        true
     }
 
     /// Writes a message at once, stamped `u`, as though the module had emitted it then, unless an inhibitor's
     /// window holds. Says whether it wrote. What is staged stays so.
     pub fn put(&mut self, u: Time, words: &Words, gone: impl FnMut(TapEnd)) -> bool {
         self.look(u, gone);
-        self.send(u, words)
+        if !self.open(u) {
+            return false;
+        }
+        self.writer.write(u, words);
+        self.counts.emitted += 1;
+        true
     }
 
     /// Takes in what the inhibitors say.
@@ -101,21 +132,21 @@ impl Outlet {
         sweep(&mut self.taps, now, gone);
     }
 
-    fn send(&mut self, u: Time, words: &Words) -> bool {
-        if !tap::emits(u, self.taps.iter().filter_map(|t| t.window)) {
-            self.counts.inhibited += 1;
-            if let Some(tap) = self
-                .taps
-                .iter_mut()
-                .rfind(|t| t.window.is_some_and(|w| w.holds(u)))
-            {
-                tap.reject();
-            }
-            return false;
+    /// Whether a message may be written at `u`; counts the one that may not.
+    #[inline]
+    fn open(&mut self, u: Time) -> bool {
+        if self.taps.is_empty() || tap::emits(u, self.taps.iter().filter_map(|t| t.window)) {
+            return true;
         }
-        self.writer.write(u, words);
-        self.counts.emitted += 1;
-        true
+        self.counts.inhibited += 1;
+        if let Some(tap) = self
+            .taps
+            .iter_mut()
+            .rfind(|t| t.window.is_some_and(|w| w.holds(u)))
+        {
+            tap.reject();
+        }
+        false
     }
 
     /// What was counted so far.

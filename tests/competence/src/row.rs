@@ -51,6 +51,8 @@ pub struct Row {
 pub enum World {
     /// The office.
     Office,
+    /// The warehouse, a world of another making; it has no camera and no rooms.
+    Warehouse,
 }
 
 const PLAIN: Row = Row {
@@ -138,6 +140,19 @@ pub const ROWS: &[Row] = &[
         battery_h: 0.67,
         ..PLAIN
     },
+    Row {
+        name: "other0",
+        title: "level 0 in another world",
+        world: World::Warehouse,
+        ..PLAIN
+    },
+    Row {
+        name: "other01",
+        title: "levels 0+1 in another world",
+        levels: 2,
+        world: World::Warehouse,
+        ..PLAIN
+    },
 ];
 
 /// The row called `name`.
@@ -158,7 +173,9 @@ impl Row {
     /// The creature file of this row with `seed`; `layout` is the body's line that says where.
     pub fn text(&self, seed: u64, layout: &str) -> String {
         let mut body = String::from(layout);
-        if self.quiet {
+        if self.world == World::Warehouse {
+            body = format!("kind = \"warehouse\"\nnumber = {seed}\npeople = 6");
+        } else if self.quiet {
             body = "layout = \"empty\"\npeople = 0\nattackers = 0".into();
         } else {
             body += "\npeople = 5\nattackers = 1\ncornerers = 1\ntalkers = 3";
@@ -166,7 +183,9 @@ impl Row {
         if self.noisy {
             body += "\nnoise = 0.04\ndropout = 0.02\nghosts = 0.6\ncross_talk = 0.02";
         }
-        let _ = write!(body, "\ndead = {:?}", dead(self.dead, seed));
+        if self.dead > 0 {
+            let _ = write!(body, "\ndead = {:?}", dead(self.dead, seed));
+        }
         if self.battery_h > 0.0 {
             let _ = write!(body, "\ncharge = {:?}", self.battery_h);
         }
@@ -179,7 +198,8 @@ impl Row {
                 }
                 "people" | "attackers" => {}
                 "kind" if line.contains("\"office\"") => {
-                    let _ = writeln!(text, "{line}\n{body}");
+                    let kind = if self.world == World::Office { line } else { "" };
+                    let _ = writeln!(text, "{kind}\n{body}");
                 }
                 _ => {
                     let _ = writeln!(text, "{line}");

@@ -8,6 +8,7 @@ use std::collections::BTreeSet;
 use afsm::Kinds;
 use afsm::random::Random;
 use daemon::body::office::{OfficeGuard, OfficeWorld};
+use daemon::body::warehouse::WarehouseWorld;
 use daemon::gate::Causes;
 use daemon::machine::{Machine, kinds};
 use daemon::virtual_run::VirtualRun;
@@ -147,13 +148,30 @@ fn world_of(machine: &mut Machine) -> &mut OfficeWorld {
     world.expect("the body is in an office")
 }
 
+fn warehouse_of(machine: &mut Machine) -> Option<&mut WarehouseWorld> {
+    let body = machine.body.as_mut().expect("the creature has a body");
+    body.world.as_any().downcast_mut::<WarehouseWorld>()
+}
+
+/// Where a robot truly is, and in which room.
+fn seen(machine: &mut Machine, robot: usize) -> (Pose, Option<usize>) {
+    if let Some(warehouse) = warehouse_of(machine) {
+        let (x, y, heading) = warehouse.warehouse.report().pose;
+        return (Pose { x, y, heading }, None);
+    }
+    let office = office_of(machine);
+    let pose = office.true_pose_of(robot);
+    let room = office.rooms().iter().position(|room| room.holds(pose.x, pose.y));
+    (pose, room)
+}
+
 fn office_of(machine: &mut Machine) -> OfficeGuard<'_> {
     world_of(machine).office()
 }
 
 impl Robot {
     fn new(mut machine: Machine, index: usize) -> Robot {
-        let begin = office_of(&mut machine).true_pose_of(index);
+        let (begin, _) = seen(&mut machine, index);
         let wire = |name: &str| {
             let ports = output_ports(&machine.creature).enumerate();
             let found = ports
@@ -187,12 +205,7 @@ impl Robot {
     }
 
     fn look(&mut self) {
-        let (pose, room) = {
-            let office = office_of(&mut self.run.machine);
-            let pose = office.true_pose_of(self.index);
-            let room = office.rooms().iter().position(|room| room.holds(pose.x, pose.y));
-            (pose, room)
-        };
+        let (pose, room) = seen(&mut self.run.machine, self.index);
         let (watch, figures) = (&mut self.watch, &mut self.figures);
         let speed = (pose.x - watch.before.x).hypot(pose.y - watch.before.y) / LOOK.seconds();
         let halted = self.run.machine.halt.decided().0.has(Causes::REFLEX);
@@ -259,6 +272,12 @@ impl Robot {
         figures.rooms = self.watch.rooms.len() as f64;
         for tap in &self.run.machine.taps {
             figures.refused += tap.gauge.counts().faults as f64;
+        }
+        if let Some(warehouse) = warehouse_of(&mut self.run.machine) {
+            let report = warehouse.warehouse.report();
+            (figures.caused, figures.contacts) = (report.caused as f64, report.contacts as f64);
+            figures.distance_m = report.travelled_m;
+            return figures;
         }
         let battery = world_of(&mut self.run.machine).battery();
         (figures.flat, figures.charges) = (battery.flat as f64, battery.charges as f64);

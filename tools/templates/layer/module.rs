@@ -6,12 +6,12 @@
 //! ```
 use afsm::{Beat, In, Module, ModuleKind, Out, Settings};
 use ipc::clock::{Span, Time};
-use ipc::message::Kind;
+use ipc::message::@TYPES@;
 use ipc::wiring::{Declaration, Parameter, Port, Takes};
 
 // Ports by their place in the declaration. A module sees its own and nothing else.
-const HEARD: In<f64> = In::at(0);
-const SAID: Out<f64> = Out::at(0);
+const HEARD: In<@TYPE@> = In::at(0);
+const SAID: Out<@TYPE@> = Out::at(0);
 
 /// What the module looks like from outside, and how one is built.
 pub static KIND: ModuleKind = ModuleKind {
@@ -19,8 +19,8 @@ pub static KIND: ModuleKind = ModuleKind {
         name: "@NAME@.sway",
         about: "says what it hears, a little more and a little less by turns",
         diagram: "More --timer/said := heard + by--> Less --timer/said := heard - by--> More",
-        inputs: &[Port::new("heard", Kind::Number, "what to sway about").unit("@UNIT@")],
-        outputs: &[Port::new("said", Kind::Number, "a little beside it").unit("@UNIT@")],
+        inputs: &[Port::new("heard", Kind::@KIND@, "what to sway about").unit("@UNIT@")],
+        outputs: &[Port::new("said", Kind::@KIND@, "a little beside it").unit("@UNIT@")],
         parameters: &[
             Parameter {
                 name: "every",
@@ -31,7 +31,7 @@ pub static KIND: ModuleKind = ModuleKind {
             Parameter {
                 name: "by",
                 takes: Takes::number(0.25),
-                unit: "@UNIT@",
+                unit: "@BY@",
                 about: "how far it sways",
             },
         ],
@@ -72,11 +72,11 @@ impl Module for Sway {
         self.timer = beat.now() + self.every;
         self.state = match self.state {
             State::More => {
-                beat.emit(SAID, heard + self.by);
+                beat.emit(SAID, @MORE@);
                 State::Less
             }
             State::Less => {
-                beat.emit(SAID, heard - self.by);
+                beat.emit(SAID, @LESS@);
                 State::More
             }
         };

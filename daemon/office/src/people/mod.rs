@@ -20,51 +20,14 @@ use crate::space::Space;
 use crate::view::PersonKind;
 use crate::ways::Ways;
 
-/// Slowest and fastest pace of a walker, m/s: people indoors with a coffee in hand.
-const PACE_M_S: (f64, f64) = (0.4, 0.7);
-/// Pace of an attacker, m/s: faster than the robot can flee.
-const ATTACK_PACE_M_S: f64 = 0.5;
-/// How fast people change their velocity, m/s².
-const ACCELERATION_M_S2: f64 = 2.0;
-/// A way point counts as reached within this distance, m.
-const REACHED_M: f64 = 0.22;
-/// How long a walker stands at a goal, s.
-const STAND_S: (f64, f64) = (2.0, 20.0);
-/// How long one stands who made no headway, before trying another goal, s.
-const BALKED_S: (f64, f64) = (0.5, 3.0);
-/// How long an attacker stands in front of the robot, s.
-const PESTER_S: (f64, f64) = (2.0, 6.0);
-/// How long a cornerer stands before a robot in a corner, s.
-const CORNER_S: (f64, f64) = (6.0, 20.0);
-/// Gap at which a cornerer stops, m.
-const CORNER_OFF_M: (f64, f64) = (0.1, 0.4);
-/// From this distance on a cornerer makes for the open side of the robot, m from middle to middle.
-const CORNER_M: f64 = 0.9;
-/// A wall farther than this from the robot's middle is no corner yet, m.
-const CORNERED_M: f64 = 2.5;
-/// How many stand together and talk.
-pub(crate) const GROUP: usize = 3;
-/// How far from the middle of the group each stands, m.
-const GROUP_RADIUS_M: f64 = 0.5;
-/// How long a group talks in one place, ways there included, s.
-const GROUP_S: f64 = 75.0;
-/// How long an attacker stays away, s.
-const AWAY_S: (f64, f64) = (15.0, 60.0);
-/// Gap to the robot at which an attacker stops, m; below zero means walking up until they touch.
-const STAND_OFF_M: (f64, f64) = (-0.1, 0.3);
-/// An attacker lets the robot get this much farther than the stand-off before following, m.
-const FOLLOW_M: f64 = 0.4;
-/// People begin to go round somebody at this gap, m.
-const ASIDE_M: f64 = 0.6;
-/// Headway is looked at this often, s, and should be at least so many m.
-const HEADWAY: (f64, f64) = (3.0, 0.25);
-/// How often an attacker looks where the robot is, s.
-const LOOK_S: f64 = 0.5;
-/// Radius that must be free for an attacker to walk straight at the robot, m: a little less than the
-/// robot's, or a robot against a wall could hide there.
-const APPROACH_RADIUS_M: f64 = 0.18;
-/// Probability that a walker on the way to a goal does not notice the robot: reading on the move.
-const CARELESS: f64 = 0.15;
+mod manners;
+
+pub(crate) use manners::GROUP;
+use manners::{
+    ACCELERATION_M_S2, APPROACH_RADIUS_M, ASIDE_M, ATTACK_PACE_M_S, AWAY_S, BALKED_S, CARELESS, CORNER_M,
+    CORNER_OFF_M, CORNER_S, CORNERED_M, FOLLOW_M, GROUP_RADIUS_M, GROUP_S, HEADWAY, LOOK_S, PACE_M_S,
+    PESTER_S, REACHED_M, STAND_OFF_M, STAND_S,
+};
 
 #[derive(Clone, Copy, Debug)]
 enum Intent {

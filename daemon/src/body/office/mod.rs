@@ -13,11 +13,17 @@ use ::office::{
     SonarModel,
 };
 use ipc::clock::{Span, Time};
-use ipc::message::{Kind, Map, Payload, Pose};
-use ipc::wiring::{Declaration, Parameter, Port, Setting, Takes};
+use ipc::message::{Map, Payload, Pose};
+use ipc::wiring::Setting;
 use serde_json::{Value, json};
 
 use super::{BodyKind, Place, World, WorldEnd};
+
+mod battery;
+mod declaration;
+
+pub use battery::Battery;
+use declaration::DECLARATION;
 
 const PING: usize = 0;
 const TURN: usize = 1;
@@ -38,157 +44,6 @@ pub static KIND: BodyKind = BodyKind {
     build,
 };
 
-static DECLARATION: Declaration = Declaration {
-    name: "office",
-    about: "Allen's body, a round robot with twelve sonars and a range camera, in a simulated office with people",
-    diagram: "ping -> sonar; turn, forward -> motion -> compass, odometry; every picture: fan",
-    inputs: &[
-        Port::new("ping", Kind::Pulse, "fires the ring of sonars"),
-        Port::new("turn", Kind::Number, "turning rate")
-            .unit("rad/s")
-            .between(-10.0, 10.0),
-        Port::new("forward", Kind::Number, "forward speed")
-            .unit("m/s")
-            .between(-2.0, 2.0),
-    ],
-    outputs: &[
-        Port::new("sonar", Kind::Map, "what the ring heard, straight ahead first")
-            .unit("m")
-            .between(0.0, 100.0),
-        Port::new("compass", Kind::Number, "which way the robot faces").unit("rad"),
-        Port::new("odometry", Kind::Pose, "where the wheels think they are"),
-        Port::new(
-            "fan",
-            Kind::Map,
-            "free distances in twelve strips of sixty degrees ahead, leftmost first",
-        )
-        .unit("m")
-        .between(0.0, 100.0),
-        Port::new(
-            "battery",
-            Kind::Number,
-            "share of the charge that is left, once a second",
-        )
-        .unit("1")
-        .between(0.0, 1.0),
-    ],
-    parameters: &[
-        count("people", 6.0, 40.0, "people who walk about"),
-        count("attackers", 2.0, 20.0, "people who walk straight at the robot"),
-        Parameter {
-            name: "layout",
-            takes: Takes::Word {
-                words: &["office", "empty", "kept", "generated"],
-                default: Some("office"),
-            },
-            unit: "",
-            about: "the standard office, one empty room of 8 m by 6 m, one of the ten kept, one drawn from a seed",
-        },
-        count(
-            "number",
-            1.0,
-            1e15,
-            "which of the kept offices, or the seed of a generated one",
-        ),
-        count(
-            "talkers",
-            0.0,
-            20.0,
-            "people who stand in groups of three and talk",
-        ),
-        count("cornerers", 0.0, 10.0, "people who corner the robot"),
-        number("noise", 0.02, 1.0, "m", "error of a sonar range, one sigma"),
-        number("dropout", 0.01, 1.0, "1", "share of sonar ranges that are lost"),
-        number(
-            "ghosts",
-            0.3,
-            1.0,
-            "1",
-            "share of mirrored echoes that come home after several bounces",
-        ),
-        number(
-            "cross_talk",
-            0.01,
-            1.0,
-            "1",
-            "share of ranges that are a neighbour's",
-        ),
-        number(
-            "specular",
-            30.0,
-            90.0,
-            "deg",
-            "plain surfaces met at less than this are mirrors to sound",
-        ),
-        number(
-            "polished",
-            55.0,
-            90.0,
-            "deg",
-            "the same for polished surfaces and glass",
-        ),
-        number("cone", 30.0, 60.0, "deg", "full width of a sonar's cone"),
-        Parameter {
-            name: "dead",
-            takes: Takes::Numbers {
-                low: 0.0,
-                high: 11.0,
-                most: 12,
-                default: Some(&[]),
-            },
-            unit: "",
-            about: "sonars that hear nothing, numbered from 0, straight ahead, counter-clockwise",
-        },
-        number("drift", 0.01, 1.0, "1", "error of the wheels' size, one sigma"),
-        number(
-            "slip",
-            0.01,
-            1.0,
-            "m",
-            "error of the odometry after one metre, one sigma",
-        ),
-        number("compass", 0.02, 1.0, "rad", "error of the compass, one sigma"),
-        Parameter {
-            name: "picture",
-            takes: Takes::Span {
-                default: Some(Span::millis(400)),
-            },
-            unit: "",
-            about: "time between two pictures of the range camera",
-        },
-        number(
-            "charge",
-            0.0,
-            1000.0,
-            "h",
-            "how long a full charge lasts; 0 for ever",
-        ),
-    ],
-};
-
-const fn count(name: &'static str, default: f64, high: f64, about: &'static str) -> Parameter {
-    number(name, default, high, "1", about)
-}
-
-const fn number(
-    name: &'static str,
-    default: f64,
-    high: f64,
-    unit: &'static str,
-    about: &'static str,
-) -> Parameter {
-    Parameter {
-        name,
-        takes: Takes::Number {
-            low: 0.0,
-            high,
-            default: Some(default),
-        },
-        unit,
-        about,
-    }
-}
-
 /// An office with what its robots were told last; shared by the bodies in it.
 struct Shared {
     office: Office,
@@ -205,67 +60,6 @@ pub struct OfficeWorld {
     picture: Span,
     picture_due: Time,
     battery: Battery,
-}
-
-/// A battery, and the place where it charges.
-#[derive(Clone, Copy, Debug)]
-pub struct Battery {
-    /// Share of the charge that is left.
-    pub left: f64,
-    /// Times that it ran out.
-    pub flat: u64,
-    /// Times that charging began.
-    pub charges: u64,
-    hours: f64,
-    home: (f64, f64),
-    charging: bool,
-    last: Option<Time>,
-    told: Option<Time>,
-}
-
-/// As near to where it started the robot charges, m.
-const DOCK_M: f64 = 0.8;
-/// So much faster than it empties the battery charges.
-const CHARGING: f64 = 10.0;
-/// Below this share charging is worth counting.
-const CHARGE_BELOW: f64 = 0.6;
-
-impl Battery {
-    fn new(hours: f64, home: (f64, f64)) -> Battery {
-        Battery {
-            left: 1.0,
-            flat: 0,
-            charges: 0,
-            hours,
-            home,
-            charging: false,
-            last: None,
-            told: None,
-        }
-    }
-
-    /// Lets time pass up to `now` with the robot at `at`; says whether it has any charge.
-    fn pass(&mut self, now: Time, at: (f64, f64)) -> bool {
-        let gone = self
-            .last
-            .replace(now)
-            .map_or(0.0, |last| now.since(last).seconds());
-        if self.hours <= 0.0 {
-            return true;
-        }
-        let docked = (at.0 - self.home.0).hypot(at.1 - self.home.1) < DOCK_M;
-        if docked && !self.charging && self.left < CHARGE_BELOW {
-            self.charges += 1;
-            self.charging = true;
-        }
-        self.charging &= docked;
-        let share = gone / (self.hours * 3600.0);
-        let had = self.left > 0.0;
-        self.left += if docked { share * CHARGING } else { -share };
-        self.left = self.left.clamp(0.0, 1.0);
-        self.flat += u64::from(had && self.left == 0.0);
-        self.left > 0.0
-    }
 }
 
 /// The parameters of a body, by name.

@@ -7,7 +7,6 @@
 
 use std::io::{self, BufRead, BufReader, Write};
 use std::os::unix::net::UnixStream;
-use std::path::PathBuf;
 use std::time::Duration;
 
 use serde::{Deserialize, Serialize};
@@ -17,6 +16,14 @@ use crate::wire::LAYOUT;
 use crate::wire::iceoryx::ICEORYX2;
 use crate::wiring::creature::How;
 use crate::wiring::directory::{Directory, Listed};
+
+mod peer;
+mod place;
+
+pub use peer::Peer;
+use place::domain_prefix;
+pub(crate) use place::socket_in_run_dir;
+pub use place::{run_dir, socket_path};
 
 /// Version of the control protocol.
 pub const PROTOCOL: u32 = 1;
@@ -391,67 +398,4 @@ pub fn running() -> Vec<String> {
         .collect();
     names.sort();
     names
-}
-
-/// The directory of control sockets: `SUBSUMED_RUN`, else `$XDG_RUNTIME_DIR/subsumed`, else
-/// `/run/subsumed` if there is one, else one of the user's own below `/tmp`.
-pub fn run_dir() -> PathBuf {
-    if let Some(dir) = std::env::var_os("SUBSUMED_RUN") {
-        return dir.into();
-    }
-    if let Some(dir) = std::env::var_os("XDG_RUNTIME_DIR") {
-        return PathBuf::from(dir).join("subsumed");
-    }
-    let system = PathBuf::from("/run/subsumed");
-    if system.is_dir() {
-        return system;
-    }
-    PathBuf::from(format!("/tmp/subsumed-{}", rustix::process::getuid().as_raw()))
-}
-
-/// The control socket of the daemon that runs `creature`.
-pub fn socket_path(creature: &str) -> PathBuf {
-    socket_in_run_dir(creature, "sock")
-}
-
-/// A socket of this shared-memory domain, `name.suffix`.
-pub(crate) fn socket_in_run_dir(name: &str, suffix: &str) -> PathBuf {
-    run_dir().join(format!("{}{name}.{suffix}", domain_prefix()))
-}
-
-/// Who is at the other end of a Unix socket, as the kernel knows it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Peer {
-    /// Its process.
-    pub pid: i32,
-    /// Its user.
-    pub user: u32,
-    /// Its group.
-    pub group: u32,
-}
-
-impl Peer {
-    /// Who connected to, or listens at, the other end of `stream` (`SO_PEERCRED`).
-    ///
-    /// # Errors
-    /// When the kernel does not say.
-    pub fn of(stream: &UnixStream) -> io::Result<Peer> {
-        let credentials = rustix::net::sockopt::socket_peercred(stream)?;
-        Ok(Peer {
-            pid: credentials.pid.as_raw_nonzero().get(),
-            user: credentials.uid.as_raw(),
-            group: credentials.gid.as_raw(),
-        })
-    }
-
-    /// Whether it is this process's user, or root, who may do everything to this process anyway.
-    pub fn is_us(self) -> bool {
-        self.user == rustix::process::geteuid().as_raw() || self.user == 0
-    }
-}
-
-fn domain_prefix() -> String {
-    std::env::var("SUBSUMED_DOMAIN")
-        .map(|d| format!("{d}."))
-        .unwrap_or_default()
 }
