@@ -8,6 +8,8 @@ use std::sync::Mutex;
 use ipc::clock::{self, Time};
 use ipc::control::Event;
 
+use crate::journal::Journal;
+
 /// Events that are kept; older ones are in the log only.
 pub const EVENTS_MAX: usize = 1000;
 
@@ -22,6 +24,7 @@ const CALLERS_EVENTS_MAX: u32 = 50;
 #[derive(Debug)]
 pub struct Events {
     began: Time,
+    journal: Option<Journal>,
     kept: Mutex<Kept>,
 }
 
@@ -40,6 +43,7 @@ impl Events {
     pub fn new(began: Time) -> Events {
         Events {
             began,
+            journal: Journal::ours(),
             kept: Mutex::default(),
         }
     }
@@ -47,6 +51,11 @@ impl Events {
     /// Notes an event, and logs it. The text may hold what a stranger sent: it is cut to [`TEXT_MAX`] and its
     /// control characters are replaced.
     pub fn note(&self, kind: &str, layer: Option<&str>, text: impl Into<String>) {
+        self.note_causes(kind, layer, &[], text);
+    }
+
+    /// The same about a halt, with its causes by name.
+    pub fn note_causes(&self, kind: &str, layer: Option<&str>, causes: &[&str], text: impl Into<String>) {
         let time_s = clock::monotonic().since(self.began).seconds();
         let mut kept = self.kept.lock().expect("nobody panics holding events");
         let second = time_s as u64;
@@ -55,7 +64,7 @@ impl Events {
             let left_out = std::mem::take(&mut kept.left_out);
             if left_out > 0 {
                 let text = format!("{left_out} more events of layers and callers were left out");
-                kept.keep(time_s, kind, None, text);
+                self.log(kept.keep(time_s, kind, None, text), &[]);
             }
         }
         if matches!(kind, "layer" | "caller") {
@@ -65,7 +74,17 @@ impl Events {
                 return;
             }
         }
-        kept.keep(time_s, kind, layer.map(plain), plain(&text.into()));
+        self.log(
+            kept.keep(time_s, kind, layer.map(plain), plain(&text.into())),
+            causes,
+        );
+    }
+
+    /// To the journal with fields, if it is ours; as readable text otherwise.
+    fn log(&self, event: &Event, causes: &[&str]) {
+        if !self.journal.as_ref().is_some_and(|j| j.takes(event, causes)) {
+            eprintln!("[{:9.3}] {}", event.time_s, event.text);
+        }
     }
 
     /// Events after the `after`-th, oldest first.
@@ -76,8 +95,7 @@ impl Events {
 }
 
 impl Kept {
-    fn keep(&mut self, time_s: f64, kind: &str, layer: Option<String>, text: String) {
-        eprintln!("[{time_s:9.3}] {text}");
+    fn keep(&mut self, time_s: f64, kind: &str, layer: Option<String>, text: String) -> &Event {
         self.last += 1;
         if self.events.len() == EVENTS_MAX {
             self.events.pop_front();
@@ -89,6 +107,7 @@ impl Kept {
             layer,
             text,
         });
+        self.events.back().expect("one was just put in")
     }
 }
 

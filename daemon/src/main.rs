@@ -11,7 +11,7 @@ use clap::Parser;
 use daemon::admission::Admission;
 use daemon::control::{self, Control};
 use daemon::executor::host;
-use daemon::feeder::Fed;
+use daemon::feeder::{self, Fed};
 use daemon::machine::{Machine, cells_apart, kinds};
 use daemon::running::{self, Running};
 use daemon::segment;
@@ -34,7 +34,7 @@ static ALLOCATOR: daemon::alloc::Counting = daemon::alloc::Counting;
     subsumed --headless --seconds 60        one minute, nothing to look at\n  \
     subsumed --name jerry --page-port 0     a second instance beside the first\n  \
     subsumed --body hall                    the body lives in another process: `subsumed-body --name hall`\n\n\
-    Ctrl-C halts the body, then leaves.\n\
+    Ctrl-C halts the body, then leaves. SIGHUP checks the creature file again and says what a restart would change.\n\
     Status: 0 after a signal or --seconds; 1 when the host refuses; 2 for bad input."
 )]
 struct Options {
@@ -124,6 +124,9 @@ fn run(options: &Options, creature: Creature) -> Result<(), String> {
     for signal in [signal_hook::consts::SIGTERM, signal_hook::consts::SIGINT] {
         signal_hook::flag::register(signal, leave.clone()).map_err(|e| format!("signal {signal}: {e}"))?;
     }
+    let hup = Arc::new(AtomicBool::new(false));
+    signal_hook::flag::register(signal_hook::consts::SIGHUP, hup.clone())
+        .map_err(|e| format!("SIGHUP: {e}"))?;
     // Before any thread is made: none may inherit a real-time policy. What is refused here is said later.
     let _ = host::be_ordinary();
     let name = creature.name.clone();
@@ -152,7 +155,7 @@ fn run(options: &Options, creature: Creature) -> Result<(), String> {
         if !options.headless {
             introduce(&running, page.as_ref());
         }
-        wait(options, &leave);
+        wait(options, &leave, || reload(options, &hup, &running));
         if segment::cut() > 0 {
             running.leave_cut();
         }
@@ -205,11 +208,24 @@ fn introduce(running: &Running, page: Option<&page::Server>) {
     println!("ask it: cargo run --release -p tools --{other} status        leave: Ctrl-C");
 }
 
-fn wait(options: &Options, leave: &AtomicBool) {
+/// Reads the creature file again if SIGHUP asked for it; says what would change, and changes nothing.
+fn reload(options: &Options, hup: &AtomicBool, running: &Running) {
+    if !hup.swap(false, Ordering::Relaxed) {
+        return;
+    }
+    feeder::reloading();
+    for line in daemon::reload::report(&running.shared.creature, load(options)) {
+        running.shared.events.note("reload", None, line);
+    }
+    feeder::reloaded();
+}
+
+fn wait(options: &Options, leave: &AtomicBool, look: impl Fn()) {
     let began = Instant::now();
     let limit = options.seconds.map(Duration::from_secs_f64);
     let goes_on = || !leave.load(Ordering::Relaxed) && segment::cut() == 0;
     while goes_on() && limit.is_none_or(|limit| began.elapsed() < limit) {
+        look();
         std::thread::sleep(Duration::from_millis(20));
     }
 }

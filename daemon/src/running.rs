@@ -22,7 +22,7 @@ use crate::body::remote::{self, Remote};
 use crate::body::{self, World, WorldEnd};
 use crate::events::Events;
 use crate::executor::{Beating, Refusal, host, plan};
-use crate::feeder::{self, Fed};
+use crate::feeder::{self, Fed, Tended};
 use crate::gate::Causes;
 use crate::halt::{CauseCount, HaltChannel};
 use crate::machine::{Apart, Embodied, Machine};
@@ -203,10 +203,18 @@ pub fn start(
         helpers.into_iter().for_each(|helper| drop(helper.join()));
         return Err(refused(&refusals));
     }
-    if creature.body.is_some() {
-        helpers.push(feeder::feed(fed, progress, shared.clone(), leave.clone())?);
-    }
     refusals.dedup();
+    let mode = if refusals.is_empty() {
+        "real time"
+    } else {
+        "best effort"
+    };
+    let tended = Tended {
+        progress: creature.body.is_some().then_some(progress),
+        beats: records.iter().map(|record| record.gauge.clone()).collect(),
+        mode,
+    };
+    helpers.push(feeder::feed(fed, tended, shared.clone(), leave.clone())?);
     helpers.push(keeper(owned, shared.clone(), leave.clone())?);
     let net = output_ports(&creature)
         .enumerate()
@@ -235,11 +243,7 @@ pub fn start(
     let watcher = Watcher {
         shared: shared.clone(),
         began,
-        mode: if refusals.is_empty() {
-            "real time"
-        } else {
-            "best effort"
-        },
+        mode,
         notes: refusals.iter().map(Refusal::to_string).collect(),
         taps: watched_taps.collect(),
         wires: net,
@@ -292,6 +296,7 @@ impl Running {
 
     /// Halts the body, waits until it stands, ends every thread.
     pub fn shut_down(mut self) {
+        feeder::stopping();
         self.shared.halt.halt(Causes::SHUTDOWN);
         self.come_to_a_stand(Causes::SHUTDOWN);
         self.stop.store(true, Ordering::Relaxed);
@@ -412,7 +417,7 @@ impl Watcher {
             let name = cause.names().join("");
             let text =
                 format!("the body was halted for a moment: {name} ({unseen} times, last at {at:.3} s)");
-            self.shared.events.note("halt", None, text);
+            self.shared.events.note_causes("halt", None, &cause.names(), text);
         }
         self.counts = counts;
         if causes == self.causes {
@@ -423,7 +428,8 @@ impl Watcher {
             some => format!("the body is halted: {}", some.names().join(", ")),
         };
         self.causes = causes;
-        self.shared.events.note("halt", None, text);
+        let names = causes.names();
+        self.shared.events.note_causes("halt", None, &names, text);
     }
 
     fn count(&self, counted: &CauseCount, causes: Causes) -> Value {

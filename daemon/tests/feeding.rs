@@ -37,7 +37,9 @@ fn systemd_hears_ready_meals_while_all_beat_and_stopping() {
         ("WATCHDOG_USEC", "400000"),
     ];
     let mut daemon = stage.start_with(env!("CARGO_BIN_EXE_subsumed"), &arguments, &variables);
-    assert!(heard(long).is_some_and(|said| said.contains("READY=1")));
+    let first = heard(long).expect("it says that it is ready");
+    let status = "STATUS=level 0 (avoid); ";
+    assert!(first.contains("READY=1") && first.contains(status), "{first}");
     for _ in 0..5 {
         assert!(heard(long).is_some_and(|said| said.contains("WATCHDOG=1")));
     }
@@ -50,12 +52,20 @@ fn systemd_hears_ready_meals_while_all_beat_and_stopping() {
         heard(long).is_some_and(|said| said.contains("WATCHDOG=1")),
         "fed again"
     );
+    daemon.signal(Signal::HUP);
+    while !heard(long).expect("a reload is said").contains("RELOADING=1") {}
+    while !heard(long).expect("and its end").contains("READY=1") {}
+    daemon.says("reload: the creature file is sound, and says what runs", 1);
     assert!(daemon.leave().success());
-    let mut last = String::new();
+    let mut all = Vec::new();
     while let Some(said) = heard(Duration::from_millis(200)) {
-        last = said;
+        all.push(said);
     }
-    assert!(last.contains("STOPPING=1"), "{last}");
+    let halted = all.iter().position(|said| said.contains("halted: shutdown"));
+    let stopping = all.iter().position(|said| said.contains("STOPPING=1"));
+    assert!(stopping.is_some() && stopping < halted, "{all:?}");
+    let last = all.pop().expect("it was not silent");
+    assert!(last.contains("STOPPING=1") && last.contains("the body stands"), "{last}");
 }
 
 #[test]

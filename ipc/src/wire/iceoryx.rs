@@ -111,7 +111,8 @@ impl Domain {
     /// Joins the shared-memory domain of this host as `name`, and removes what dead processes left there.
     ///
     /// `SUBSUMED_DOMAIN`, if set, names a domain of its own (letters, digits, `-`, `_`): its files have
-    /// their own prefix and processes of other domains do not see it.
+    /// their own prefix and processes of other domains do not see it. Without it, iceoryx2's own files lie in
+    /// the folder `iceoryx2` of the run directory if there is one, else in `/tmp/iceoryx2`.
     ///
     /// # Errors
     /// [`ShareError::Refused`] when shared memory cannot be used.
@@ -326,6 +327,12 @@ fn service_name(owner: &str) -> Result<ServiceName, ShareError> {
         .map_err(|_| ShareError::Name(owner.into()))
 }
 
+/// The folder `iceoryx2` of the run directory, if the operator made one: services then need no common `/tmp`.
+fn system_root() -> Option<String> {
+    let root = crate::control::run_dir().join("iceoryx2");
+    root.is_dir().then(|| format!("{}/", root.display()))
+}
+
 fn config() -> Result<Config, ShareError> {
     let mut config = Config::global_config().clone();
     if let Ok(domain) = std::env::var("SUBSUMED_DOMAIN") {
@@ -344,6 +351,9 @@ fn config() -> Result<Config, ShareError> {
         config
             .global
             .set_root_path(&Path::new(root.as_bytes()).map_err(|_| ShareError::Name(domain.clone()))?);
+    } else if let Some(root) = system_root() {
+        let path = Path::new(root.as_bytes()).map_err(|_| ShareError::Name(root.clone()))?;
+        config.global.set_root_path(&path);
     }
     Ok(config)
 }
