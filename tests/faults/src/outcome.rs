@@ -6,8 +6,8 @@ use ipc::clock::Span;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-/// Lateness of a real-time thread from which on the host is to blame for what follows: a quarter of the least
-/// lateness that the watchdog takes for a fault is no cause yet, more may be.
+/// Lateness of a real-time thread from which on the host may be to blame for a halt: one such gap and a period
+/// or two of the creature's own make the 50 ms that the watchdog takes for a fault.
 const HOST_LATE: Span = Span::millis(15);
 
 /// What the specification says of a fault.
