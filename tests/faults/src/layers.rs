@@ -1,0 +1,168 @@
+//! Faults of layer processes and callers: none of them may halt the body, or take anything from level 0.
+//!
+//! Must never leave a rogue behind: it is killed with its trial.
+
+use std::io::{Read, Write};
+use std::os::unix::net::UnixStream;
+use std::time::Duration;
+
+use ipc::control::{REQUEST_MAX, Reply, Request};
+use rustix::process::Signal;
+use serde_json::Value;
+
+use crate::rogue::Behaviour;
+use crate::stage::{Stage, wait_for};
+use crate::trial::Trial;
+
+/// Level 1 of Allen dies by `signal`.
+pub(crate) fn dies(trial: &mut Trial, signal: Signal) -> Result<(), String> {
+    trial.goes_on(|trial| {
+        let mut wander = trial.wander()?;
+        trial.wait_a_while();
+        wander.end_by(signal)?;
+        told(&trial.stage, &["layer wander", "died"])
+    })
+}
+
+/// Level 1 of Allen freezes; it goes on when it thaws.
+pub(crate) fn freezes(trial: &mut Trial) -> Result<(), String> {
+    trial.goes_on(|trial| {
+        let mut wander = trial.wander()?;
+        trial.wait_a_while();
+        wander.signal(Signal::STOP);
+        std::thread::sleep(Duration::from_millis(400));
+        wander.signal(Signal::CONT);
+        wander.leave()
+    })
+}
+
+/// A rogue that ends by itself, in a way that is no good order.
+pub(crate) fn ends(trial: &mut Trial, how: Behaviour) -> Result<(), String> {
+    trial.goes_on(|trial| {
+        let mut rogue = trial.rogue(how, how.name())?;
+        rogue.says("attached")?;
+        let status = rogue.end()?;
+        trial
+            .outcome
+            .expect(!status.success(), || format!("the rogue ended with {status}"));
+        told(&trial.stage, &[&format!("layer {}", how.name()), "died"])
+    })
+}
+
+/// A layer that announces 20 ms and writes every 200: its tap runs out in between.
+pub(crate) fn slow(trial: &mut Trial) -> Result<(), String> {
+    trial.goes_on(|trial| {
+        let mut rogue = trial.rogue(Behaviour::Slow, "slow")?;
+        wait_for("its tap holds", || tap_of(&trial.stage, "slow")["holds"] == true)?;
+        rogue.signal(Signal::KILL);
+        rogue.end()?;
+        told(&trial.stage, &["layer slow", "died"])?;
+        // Gone with its layer; nothing of it holds any longer.
+        wait_for("its tap is gone", || tap_of(&trial.stage, "slow").is_null())
+    })
+}
+
+/// A layer that floods its tap is let go.
+pub(crate) fn floods(trial: &mut Trial) -> Result<(), String> {
+    trial.goes_on(|trial| {
+        let mut rogue = trial.rogue(Behaviour::Flood, "flood")?;
+        rogue.says("let go")?;
+        rogue.end()?;
+        told(&trial.stage, &["policy breach: layer flood floods"])
+    })
+}
+
+/// A layer whose messages are none: every one is counted, none is delivered.
+pub(crate) fn garbage(trial: &mut Trial) -> Result<(), String> {
+    trial.goes_on(|trial| {
+        let mut rogue = trial.rogue(Behaviour::Garbage, "garbage")?;
+        rogue.says("attached")?;
+        wait_for("garbage is counted", || {
+            tap_of(&trial.stage, "garbage")["faults"].as_u64() > Some(5)
+        })?;
+        let delivered = tap_of(&trial.stage, "garbage")["delivered"].as_u64();
+        trial.outcome.expect(delivered == Some(0), || {
+            format!("{delivered:?} messages were delivered")
+        });
+        told(&trial.stage, &["layer garbage", "messages that were none"])?;
+        rogue.leave()
+    })
+}
+
+/// Eight processes that attach and detach in a tight loop.
+pub(crate) fn churn(trial: &mut Trial) -> Result<(), String> {
+    trial.goes_on(|trial| {
+        let mut rogues = Vec::new();
+        for number in 0..8 {
+            rogues.push(trial.rogue(Behaviour::Churn, &format!("churn{number}"))?);
+        }
+        std::thread::sleep(Duration::from_millis(700));
+        let mut attached = 0;
+        for rogue in &mut rogues {
+            rogue.leave()?;
+            rogue.says("attached")?;
+            attached += rogue.number_after("attached ").unwrap_or(0);
+        }
+        trial.outcome.expect(attached > 16, || {
+            format!("they were attached {attached} times only")
+        });
+        let layers = || trial.stage.status()["layers"].as_array().map_or(0, Vec::len);
+        let gone = || {
+            let status = trial.stage.status();
+            let layers = status["layers"].as_array();
+            layers.is_some_and(|l| l.iter().all(|l| l["attached"] == false))
+        };
+        wait_for(&format!("the last of {} is gone", layers()), gone)
+    })
+}
+
+/// What is no manifest on the control socket: random bytes, a line without an end, half a document, an enormous
+/// length, depth, and callers who never say a word.
+pub(crate) fn manifest_garbage(trial: &mut Trial) -> Result<(), String> {
+    trial.goes_on(|trial| {
+        let mut silent = Vec::new();
+        for round in 0..24 {
+            let bytes: Vec<u8> = (0..512).map(|_| trial.draw() as u8).collect();
+            let Ok(mut stream) = UnixStream::connect(trial.stage.socket()) else {
+                continue;
+            };
+            let _ = stream.set_write_timeout(Some(Duration::from_millis(200)));
+            let _ = stream.set_read_timeout(Some(Duration::from_millis(20)));
+            let sent = match round % 6 {
+                0 => stream.write_all(&bytes).and_then(|()| stream.write_all(b"\n")),
+                1 => stream.write_all(&vec![b' '; 2 * REQUEST_MAX]),
+                2 => stream.write_all(br#"{"ask":"plug","layer":"half","level":"#),
+                3 => stream.write_all(br#"{"ask":"plug","layer":["x"],"level":1e999,"taps":-1}"#),
+                4 => stream.write_all(&[b'['; 100_000]),
+                _ => Ok(()),
+            };
+            // Refused half-way is as it should be; whatever it says is no matter.
+            let _ = sent.and_then(|()| stream.write_all(b"\n"));
+            let _ = stream.read(&mut [0; 256]);
+            if round % 6 == 5 {
+                silent.push(stream);
+            }
+        }
+        let answered = matches!(trial.stage.ask(&Request::Status), Some(Reply::Status(_)));
+        trial
+            .outcome
+            .expect(answered, || "nobody answers a tool any more".into());
+        drop(silent);
+        trial.wander()?.leave()
+    })
+}
+
+/// Waits until an event holds all of `parts`.
+fn told(stage: &Stage, parts: &[&str]) -> Result<(), String> {
+    wait_for(&format!("an event says {parts:?}"), || stage.happened(parts))
+}
+
+/// The tap of layer `name` as the status shows it; null if there is none.
+fn tap_of(stage: &Stage, name: &str) -> Value {
+    let status = stage.status();
+    let from = format!("{name}.heading");
+    let mut taps = status["taps"].as_array().into_iter().flatten();
+    taps.find(|t| t["from"] == from.as_str())
+        .cloned()
+        .unwrap_or(Value::Null)
+}

@@ -1,0 +1,268 @@
+//! Faults of the daemon and of the body's process: dead, frozen, broken inside. Each of them halts.
+//!
+//! Must never take the daemon's word for a halt where the daemon is what broke: the body's own pulse says so.
+
+use ipc::clock::{self, Span, Time};
+use rustix::process::Signal;
+
+use crate::inside::{self, Break};
+use crate::observe::Observer;
+use crate::stage::{BODY, LIFE_S, Player, wait_for};
+use crate::trial::{Trial, leave_body};
+
+/// How long the kernel lets a real-time thread run without sleeping before it ends the process, with the ticks
+/// in which it counts.
+const RUNAWAY: Span = Span::millis(520);
+
+/// The daemon that drives a body process dies by `signal`.
+pub(crate) fn daemon_dies(trial: &mut Trial, signal: Signal) -> Result<(), String> {
+    let mut body = trial.body()?;
+    let mut daemon = trial.daemon(&["--body", BODY])?;
+    let (observer, fault) = at_a_free_moment(trial)?;
+    daemon.signal(signal);
+    body_halts(trial, &observer, fault)?;
+    daemon.end()?;
+    drop(observer);
+    trial.restart()?;
+    leave_body(trial, &mut body);
+    Ok(())
+}
+
+/// The daemon that drives a body process freezes, and thaws.
+pub(crate) fn daemon_freezes(trial: &mut Trial) -> Result<(), String> {
+    let mut body = trial.body()?;
+    let mut daemon = trial.daemon(&["--body", BODY])?;
+    let (observer, fault) = at_a_free_moment(trial)?;
+    daemon.signal(Signal::STOP);
+    body_halts(trial, &observer, fault)?;
+    daemon.signal(Signal::CONT);
+    wait_for("the body is free after the thaw", || observer.is_open())?;
+    drop(observer);
+    trial.wait_until_free(&daemon)?;
+    let status = trial.stage.status();
+    trial.outcome.inspect(&status);
+    trial.end(&mut daemon)?;
+    leave_body(trial, &mut body);
+    Ok(())
+}
+
+/// The body's process dies or freezes; the daemon halts until one of its name is back.
+pub(crate) fn body_lost(trial: &mut Trial, signal: Signal) -> Result<(), String> {
+    let mut body = trial.body()?;
+    let mut daemon = on_trial(trial, Break::Busy)?;
+    let (observer, fault) = at_a_free_moment(trial)?;
+    body.signal(signal);
+    let bound = Span(trial.limits.stale.0 + 2 * trial.limits.period.0);
+    halts(trial, &daemon, "body lost", fault, bound)?;
+    trial.outcome.host_late = observer.late();
+    drop(observer);
+    if signal == Signal::STOP {
+        body.signal(Signal::CONT);
+    } else {
+        body.end()?;
+        body = trial.body()?;
+    }
+    trial.wait_until_free(&daemon)?;
+    wait_for("the body tells how it looks", || {
+        trial.stage.status()["contacts"].is_object()
+    })?;
+    let status = trial.stage.status();
+    trial.outcome.inspect(&status);
+    trial.end(&mut daemon)?;
+    leave_body(trial, &mut body);
+    Ok(())
+}
+
+/// A module inside the daemon breaks so that the daemon halts for `cause` within `limit` and two periods of
+/// the watchdog, and lives.
+pub(crate) fn breaks_inside(trial: &mut Trial, how: Break, cause: &str, limit: Span) -> Result<(), String> {
+    let mut body = trial.body()?;
+    let mut daemon = on_trial(trial, how)?;
+    let best_effort = trial.stage.status()["mode"] == "best effort";
+    let (observer, _) = at_a_free_moment(trial)?;
+    let fault = broken(&daemon)?;
+    halts(
+        trial,
+        &daemon,
+        cause,
+        fault,
+        Span(limit.0 + 2 * trial.limits.period.0),
+    )?;
+    trial.outcome.host_late = observer.late();
+    if how == Break::Loop {
+        if best_effort {
+            // Without SCHED_FIFO the thread starves nobody, and nobody ends it.
+            daemon.signal(Signal::KILL);
+        }
+        runs_away(trial, &mut daemon, &observer, fault)?;
+        drop(observer);
+        trial.restart()?;
+    } else {
+        drop(observer);
+        let status = trial.stage.status();
+        trial.outcome.inspect(&status);
+        trial.end(&mut daemon)?;
+    }
+    leave_body(trial, &mut body);
+    Ok(())
+}
+
+/// The kernel ends a daemon one of whose real-time threads never sleeps; the body's own gate has closed then.
+fn runs_away(trial: &mut Trial, daemon: &mut Player, observer: &Observer, fault: Time) -> Result<(), String> {
+    daemon.end()?;
+    wait_for("the body's own gate closes", || {
+        observer.closed_after(fault).is_some()
+    })?;
+    let closed = observer.closed_after(fault).map(|at| at.since(fault));
+    let bound = Span(RUNAWAY.0 + trial.limits.stale.0 + trial.limits.period.0 + observer.late().0);
+    trial.outcome.expect(closed.is_some_and(|c| c <= bound), || {
+        format!("the body's own gate closed after {closed:?}, bound {bound}")
+    });
+    Ok(())
+}
+
+/// A layer inside the daemon overruns under policy skip: its beats are skipped, nothing halts.
+pub(crate) fn skips_inside(trial: &mut Trial) -> Result<(), String> {
+    let mut body = trial.body()?;
+    let daemon = on_trial(trial, Break::Skip)?;
+    trial.goes_on_with(daemon, |trial| {
+        let skipped = |trial: &Trial| {
+            let status = trial.stage.status();
+            let mut layers = status["layers"].as_array().into_iter().flatten();
+            layers
+                .find(|l| l["name"] == "trial")
+                .and_then(|l| l["skipped"].as_u64())
+        };
+        let before = skipped(trial);
+        trial.signal_daemon(Signal::USR1)?;
+        wait_for("its beats are skipped", || skipped(trial) > before)?;
+        wait_for("the body tells how it looks", || {
+            trial.stage.status()["contacts"].is_object()
+        })
+    })?;
+    leave_body(trial, &mut body);
+    Ok(())
+}
+
+/// A module inside the daemon panics: the process is gone, the body's own gate closes.
+pub(crate) fn panics_inside(trial: &mut Trial) -> Result<(), String> {
+    let mut body = trial.body()?;
+    let mut daemon = on_trial(trial, Break::Panic)?;
+    let (observer, _) = at_a_free_moment(trial)?;
+    let fault = broken(&daemon)?;
+    body_halts(trial, &observer, fault)?;
+    let status = daemon.end()?;
+    trial
+        .outcome
+        .expect(!status.success(), || format!("after a panic: {status}"));
+    drop(observer);
+    trial.restart()?;
+    leave_body(trial, &mut body);
+    Ok(())
+}
+
+/// SIGTERM in the middle of a long step: halted first, then left in good order.
+pub(crate) fn ends_in_mid_step(trial: &mut Trial) -> Result<(), String> {
+    let mut body = trial.body()?;
+    let mut daemon = on_trial(trial, Break::Busy)?;
+    let (observer, fault) = at_a_free_moment(trial)?;
+    daemon.signal(Signal::TERM);
+    // The signal is looked for as often as once a period.
+    halts(trial, &daemon, "shutdown", fault, Span(3 * trial.limits.period.0))?;
+    trial.outcome.host_late = observer.late();
+    let status = daemon.end()?;
+    trial
+        .outcome
+        .expect(status.success(), || format!("after SIGTERM: {status}"));
+    let closed = || observer.closed_after(fault).is_some();
+    wait_for("the body's own gate closes too", closed)?;
+    drop(observer);
+    trial.restart()?;
+    leave_body(trial, &mut body);
+    Ok(())
+}
+
+/// Somebody presses the emergency stop.
+pub(crate) fn emergency_stop(trial: &mut Trial) -> Result<(), String> {
+    let mut body = trial.body()?;
+    let mut daemon = on_trial(trial, Break::Busy)?;
+    let (observer, fault) = at_a_free_moment(trial)?;
+    trial.emergency_stop()?;
+    halts(
+        trial,
+        &daemon,
+        "emergency stop",
+        fault,
+        Span(2 * trial.limits.period.0),
+    )?;
+    trial.outcome.host_late = observer.late();
+    drop(observer);
+    let status = trial.stage.status();
+    trial.outcome.inspect(&status);
+    trial.end(&mut daemon)?;
+    leave_body(trial, &mut body);
+    Ok(())
+}
+
+/// The daemon with a module on trial, its body free.
+fn on_trial(trial: &Trial, how: Break) -> Result<Player, String> {
+    let arguments = ["inside", how.name(), "--seconds", LIFE_S];
+    let daemon = trial.stage.start(&trial.programs.ourselves, &arguments)?;
+    trial.wait_until_free(&daemon)?;
+    wait_for("the body tells how it looks", || {
+        trial.stage.status()["contacts"].is_object()
+    })?;
+    Ok(daemon)
+}
+
+/// An observer, and a moment at which the body's own gate is open.
+fn at_a_free_moment(trial: &mut Trial) -> Result<(Observer, Time), String> {
+    let observer = Observer::of_the_body()?;
+    trial.wait_a_while();
+    wait_for("the body's own gate is open", || observer.is_open())?;
+    observer.begin();
+    Ok((observer, clock::monotonic()))
+}
+
+/// Breaks the module on trial; when it broke, by its own word.
+fn broken(daemon: &Player) -> Result<Time, String> {
+    daemon.signal(Signal::USR1);
+    daemon.says("fault ")?;
+    daemon
+        .number_after("fault ")
+        .map(Time)
+        .ok_or_else(|| "it says no time".into())
+}
+
+/// Waits for the body's own gate to close: within its stale limit and one of its periods.
+fn body_halts(trial: &mut Trial, observer: &Observer, fault: Time) -> Result<(), String> {
+    // A halt that does not come is missed, not an error.
+    let _ = wait_for("the body's own gate closes", || {
+        observer.closed_after(fault).is_some()
+    });
+    let bound = trial.limits.stale + trial.limits.period;
+    trial.halted(fault, observer.closed_after(fault), bound);
+    trial.outcome.host_late = observer.late();
+    Ok(())
+}
+
+/// Waits for the daemon to halt for `cause`: it tells when the gate in its motor unit closed.
+fn halts(trial: &mut Trial, daemon: &Player, cause: &str, fault: Time, bound: Span) -> Result<(), String> {
+    let prefix = format!("halt {cause}: ");
+    let since = || {
+        let said = daemon.said();
+        let mut times = said
+            .iter()
+            .filter_map(|l| l.strip_prefix(&prefix)?.parse().ok().map(Time));
+        times.find(|at| *at >= fault)
+    };
+    let _ = wait_for("the gate closes", || since().is_some());
+    trial.halted(fault, since(), bound);
+    Ok(())
+}
+
+/// How long a vital layer may be silent: its last beat was up to a period before the fault.
+pub(crate) const VITAL_LATE: Span = Span::millis(50);
+
+/// How long a layer that halts on an overrun may run: to the end of the period after its own.
+pub(crate) const OVERRUN_LATE: Span = Span(2 * inside::PERIOD.0);

@@ -1,0 +1,203 @@
+//! `faults`: breaks real daemons, bodies and layer processes, and measures what comes of it.
+
+mod causes;
+mod host;
+mod inside;
+mod layers;
+mod lives;
+mod observe;
+mod outcome;
+mod programs;
+mod rogue;
+mod stage;
+mod suite;
+mod table;
+mod trial;
+
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+
+use causes::{CAUSES, Cause};
+use outcome::Outcome;
+use programs::Programs;
+use table::{Row, Table};
+use trial::Trial;
+
+#[global_allocator]
+static ALLOCATOR: daemon::alloc::Counting = daemon::alloc::Counting;
+
+/// Injects faults into real processes: does the body halt when it must, how soon, and does the rest go on?
+#[derive(Parser, Debug)]
+#[command(
+    version,
+    args_conflicts_with_subcommands = true,
+    after_help = "Examples:\n  \
+    faults                              every cause a few times, in less than two minutes\n  \
+    faults --cause daemon-kill          one cause\n  \
+    faults --seeds 1000 --markdown      the long run, for the page on reliability\n\n\
+    Status: 0 when all is as specified; 1 when a halt was missed or a bound broken; 2 for bad input."
+)]
+struct Options {
+    /// Injections of each cause
+    #[arg(long, default_value_t = 2, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=100_000))]
+    seeds: u64,
+    /// The first seed
+    #[arg(long, default_value_t = 1, value_name = "N")]
+    from: u64,
+    /// Only these causes (see --list)
+    #[arg(long, num_args = 1.., value_name = "NAME")]
+    cause: Vec<String>,
+    /// The names of all causes
+    #[arg(long)]
+    list: bool,
+    /// The report as JSON, with every injection
+    #[arg(long, conflicts_with = "markdown")]
+    json: bool,
+    /// The report as a Markdown table
+    #[arg(long)]
+    markdown: bool,
+    #[command(subcommand)]
+    part: Option<Part>,
+}
+
+/// Parts that this program plays when it started itself.
+#[derive(Subcommand, Debug)]
+enum Part {
+    /// One injection, on the stage that the environment names
+    #[command(hide = true)]
+    Inject {
+        cause: String,
+        #[arg(long)]
+        seed: u64,
+    },
+    /// A layer process that misbehaves
+    #[command(hide = true)]
+    Rogue {
+        how: rogue::Behaviour,
+        name: String,
+        #[arg(long)]
+        seconds: f64,
+    },
+    /// A daemon with a module that breaks
+    #[command(hide = true)]
+    Inside {
+        how: inside::Break,
+        #[arg(long)]
+        seconds: f64,
+    },
+}
+
+fn main() -> ExitCode {
+    let options = Options::parse();
+    let played = match &options.part {
+        Some(Part::Inject { cause, seed }) => inject(cause, *seed),
+        Some(Part::Rogue { how, name, seconds }) => rogue::run(*how, name, *seconds),
+        Some(Part::Inside { how, seconds }) => inside::run(*how, *seconds),
+        None => return run(&options),
+    };
+    match played {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(message) => {
+            eprintln!("faults: {message}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+/// One injection; its outcome on standard output, whatever it is.
+fn inject(name: &str, seed: u64) -> Result<(), String> {
+    let cause = causes::find(name).ok_or_else(|| format!("no cause {name:?}"))?;
+    let mut trial = Trial::new(seed)?;
+    let tried = (cause.inject)(&mut trial);
+    let mut outcome = std::mem::take(&mut trial.outcome);
+    match tried {
+        Ok(()) => outcome.judge(cause.expected),
+        Err(trouble) => outcome.broken.push(trouble),
+    }
+    let line = serde_json::to_string(&outcome).map_err(|e| e.to_string())?;
+    println!("{line}");
+    Ok(())
+}
+
+/// The whole suite.
+fn run(options: &Options) -> ExitCode {
+    if options.list {
+        for cause in CAUSES {
+            println!("{:17} {}", cause.name, cause.about);
+        }
+        return ExitCode::SUCCESS;
+    }
+    let chosen = match chosen(&options.cause) {
+        Ok(chosen) => chosen,
+        Err(message) => {
+            eprintln!("{message}");
+            return ExitCode::from(2);
+        }
+    };
+    let report = programs::build().and_then(|()| Programs::beside_us());
+    match report.and_then(|programs| try_all(options, &programs, &chosen)) {
+        Ok(table) => {
+            match (options.json, options.markdown) {
+                (true, _) => println!("{:#}", table.json()),
+                (_, true) => print!("{}", table.markdown()),
+                _ => print!("{}", table.text()),
+            }
+            ExitCode::from(u8::from(table.broken() > 0))
+        }
+        Err(message) => {
+            eprintln!("faults: {message}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+/// The causes of these names; all for none.
+fn chosen(names: &[String]) -> Result<Vec<&'static Cause>, String> {
+    let unknown: Vec<&str> = names
+        .iter()
+        .map(String::as_str)
+        .filter(|n| causes::find(n).is_none())
+        .collect();
+    if !unknown.is_empty() {
+        let known: Vec<&str> = CAUSES.iter().map(|c| c.name).collect();
+        return Err(format!(
+            "--cause: {} unknown; expected one or more of: {}",
+            unknown.join(", "),
+            known.join(", ")
+        ));
+    }
+    let all = CAUSES.iter();
+    Ok(all
+        .filter(|c| names.is_empty() || names.iter().any(|n| n == c.name))
+        .collect())
+}
+
+fn try_all(options: &Options, programs: &Programs, chosen: &[&'static Cause]) -> Result<Table, String> {
+    let mut rows = Vec::new();
+    let mut number = 0;
+    for &cause in chosen {
+        let began = std::time::Instant::now();
+        let mut outcomes: Vec<(u64, Outcome)> = Vec::new();
+        for seed in options.from..options.from.saturating_add(options.seeds) {
+            number += 1;
+            let outcome = suite::inject(programs, cause, seed, number)?;
+            for broken in &outcome.broken {
+                eprintln!("{} --seed {seed}: {broken}", cause.name);
+            }
+            let skipped = outcome.skipped.is_some();
+            outcomes.push((seed, outcome));
+            if skipped {
+                break;
+            }
+        }
+        eprintln!(
+            "{:17} {:5} times in {:.1} s",
+            cause.name,
+            outcomes.len(),
+            began.elapsed().as_secs_f64()
+        );
+        rows.push(Row { cause, outcomes });
+    }
+    Ok(Table(rows))
+}

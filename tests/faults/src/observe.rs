@@ -1,0 +1,139 @@
+//! The observer: a real-time thread that looks at a body's pulse twice a millisecond, and at how late it is itself.
+//!
+//! ```text
+//!   body process ──► cell of its page: stamp of the turn, causes of its own gate ──► changes, kept with the stamp
+//! ```
+//! Must never judge by its own clock when the gate closed: the stamp of the body's turn says so.
+
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::{Arc, Mutex};
+use std::thread::JoinHandle;
+
+use daemon::executor::host;
+use ipc::body::{PULSE_KIND, Pulse, owner_of};
+use ipc::clock::{self, Span, Time};
+use ipc::wire::Reader;
+use ipc::wire::iceoryx::Domain;
+
+use crate::stage::BODY;
+
+/// Time between two looks.
+const LOOK: Span = Span::micros(500);
+
+/// Priority: above the layers, below motor unit and watchdog.
+const PRIORITY: u8 = 60;
+
+#[derive(Debug, Default)]
+struct Seen {
+    /// When the body's gate closed or opened, and its causes from then on.
+    changes: Mutex<Vec<(Time, u32)>>,
+    /// Its longest lateness, in nanoseconds.
+    late: AtomicU64,
+    stop: AtomicBool,
+}
+
+/// The observer.
+#[derive(Debug)]
+pub(crate) struct Observer {
+    seen: Arc<Seen>,
+    thread: Option<JoinHandle<()>>,
+    domain: Option<Domain>,
+}
+
+impl Observer {
+    /// Looks at nothing but its own lateness.
+    ///
+    /// # Errors
+    /// When the host refuses a thread.
+    pub(crate) fn of_the_host() -> Result<Observer, String> {
+        Observer::start(None, None)
+    }
+
+    /// Looks at the pulse of the stage's body process as well.
+    ///
+    /// # Errors
+    /// When its page cannot be mapped.
+    pub(crate) fn of_the_body() -> Result<Observer, String> {
+        let domain = Domain::join("observer").map_err(|e| e.to_string())?;
+        let page = domain.map(&owner_of(BODY)).map_err(|e| e.to_string())?;
+        let pulse = page
+            .len()
+            .checked_sub(1)
+            .and_then(|last| page.reader(last, PULSE_KIND));
+        let pulse = pulse.ok_or("the page of the body is empty")?;
+        Observer::start(Some(pulse), Some(domain))
+    }
+
+    fn start(pulse: Option<Reader>, domain: Option<Domain>) -> Result<Observer, String> {
+        let seen = Arc::new(Seen::default());
+        let shown = seen.clone();
+        host::limit_runaway();
+        let thread = std::thread::Builder::new()
+            .name("observer".into())
+            .spawn(move || {
+                // Refused: then its own lateness is an ordinary thread's, which excuses more.
+                let _ = host::schedule_fifo(PRIORITY);
+                look_on(&shown, pulse.as_ref());
+            });
+        let thread = thread.map_err(|e| format!("a thread: {e}"))?;
+        Ok(Observer {
+            seen,
+            thread: Some(thread),
+            domain,
+        })
+    }
+
+    /// Forgets how late it was so far.
+    pub(crate) fn begin(&self) {
+        self.seen.late.store(0, Ordering::Relaxed);
+    }
+
+    /// Its longest lateness since [`begin`](Observer::begin).
+    pub(crate) fn late(&self) -> Span {
+        Span(self.seen.late.load(Ordering::Relaxed))
+    }
+
+    /// Whether the body's gate is open now.
+    pub(crate) fn is_open(&self) -> bool {
+        let changes = self.seen.changes.lock().expect("nobody panics holding it");
+        changes.last().is_some_and(|(_, causes)| *causes == 0)
+    }
+
+    /// When the body's gate first closed after `moment`.
+    pub(crate) fn closed_after(&self, moment: Time) -> Option<Time> {
+        let changes = self.seen.changes.lock().expect("nobody panics holding it");
+        let closed = changes.iter().find(|(at, causes)| *at >= moment && *causes != 0);
+        closed.map(|(at, _)| *at)
+    }
+}
+
+impl Drop for Observer {
+    fn drop(&mut self) {
+        self.seen.stop.store(true, Ordering::Relaxed);
+        if let Some(thread) = self.thread.take() {
+            let _ = thread.join();
+        }
+        if let Some(domain) = self.domain.take() {
+            domain.leave();
+        }
+    }
+}
+
+fn look_on(seen: &Seen, pulse: Option<&Reader>) {
+    let mut before = None;
+    let mut due = clock::monotonic();
+    while !seen.stop.load(Ordering::Relaxed) {
+        let now = clock::monotonic();
+        seen.late.fetch_max(now.since(due).0, Ordering::Relaxed);
+        if let Some(reading) = pulse.and_then(Reader::read) {
+            let causes = Pulse::unpack(&reading.words).causes;
+            if before != Some(causes) {
+                let mut changes = seen.changes.lock().expect("nobody panics holding it");
+                changes.push((reading.stamp, causes));
+                before = Some(causes);
+            }
+        }
+        due = due.max(now - LOOK) + LOOK;
+        clock::sleep_until(due);
+    }
+}

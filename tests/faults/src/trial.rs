@@ -1,0 +1,205 @@
+//! A trial: one injection on its stage, with what the seed decides and what came of it.
+//!
+//! Must never inject before the body is free: a fault that is not needed for the halt shows nothing.
+
+use ipc::clock::{self, Span, Time};
+use ipc::control::Request;
+use rustix::process::{Pid, Signal, kill_process};
+use serde_json::Value;
+
+use crate::observe::Observer;
+use crate::outcome::Outcome;
+use crate::programs::Programs;
+use crate::rogue::Behaviour;
+use crate::stage::{BODY, CREATURE, LIFE_S, Player, Stage, wait_for};
+
+/// What of Allen's file and body a bound is made of.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Limits {
+    /// Period of watchdog, motor unit and body.
+    pub(crate) period: Span,
+    /// How old a command or a pulse may be at the other end.
+    pub(crate) stale: Span,
+}
+
+/// One injection.
+#[derive(Debug)]
+pub(crate) struct Trial {
+    pub(crate) programs: Programs,
+    pub(crate) stage: Stage,
+    pub(crate) outcome: Outcome,
+    pub(crate) limits: Limits,
+    random: u64,
+}
+
+impl Trial {
+    /// On the stage that this process was started on.
+    ///
+    /// # Errors
+    /// When there is none, or a program is missing.
+    pub(crate) fn new(seed: u64) -> Result<Trial, String> {
+        let kinds = daemon::machine::kinds();
+        let source = ipc::wiring::Source::new("allen.toml", allen::CREATURE);
+        let creature = ipc::wiring::check::creature(&source, &kinds).map_err(|e| e.to_string())?;
+        let body = creature.body.ok_or("Allen has no body")?;
+        let kind = daemon::body::find(body.declaration.name).ok_or("Allen's body is of no known kind")?;
+        Ok(Trial {
+            programs: Programs::beside_us()?,
+            stage: Stage::inherited()?,
+            outcome: Outcome::default(),
+            limits: Limits {
+                period: body.period,
+                stale: kind.stale,
+            },
+            random: seed,
+        })
+    }
+
+    /// The next number that the seed decides (Steele and others 2014, SplitMix64).
+    pub(crate) fn draw(&mut self) -> u64 {
+        self.random = self.random.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let z = (self.random ^ (self.random >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        z ^ (z >> 31)
+    }
+
+    /// Waits a while that the seed decides, so that the fault meets every phase of every period.
+    pub(crate) fn wait_a_while(&mut self) {
+        let span = self.draw() % Span::millis(120).0;
+        clock::sleep_until(clock::monotonic() + Span(span));
+    }
+
+    /// The daemon, its body free.
+    pub(crate) fn daemon(&self, arguments: &[&str]) -> Result<Player, String> {
+        let mut all = vec!["--name", CREATURE, "--headless", "--seconds", LIFE_S];
+        all.extend(arguments);
+        let player = self.stage.start(&self.programs.subsumed, &all)?;
+        self.wait_until_free(&player)?;
+        Ok(player)
+    }
+
+    /// A process that runs Allen's body.
+    pub(crate) fn body(&self) -> Result<Player, String> {
+        let body = self
+            .stage
+            .start(&self.programs.body, &["--name", BODY, "--seconds", LIFE_S])?;
+        body.says("waits for a daemon")?;
+        Ok(body)
+    }
+
+    /// Level 1 of Allen as a process, attached.
+    pub(crate) fn wander(&self) -> Result<Player, String> {
+        let wander = self
+            .stage
+            .start(&self.programs.wander, &["--creature", CREATURE])?;
+        wait_for("wander is attached", || self.stage.has_layer("wander"))
+            .map_err(|e| format!("{e}; it said {:?}", wander.said()))?;
+        Ok(wander)
+    }
+
+    /// A layer process that misbehaves, as layer `name`.
+    pub(crate) fn rogue(&self, how: Behaviour, name: &str) -> Result<Player, String> {
+        let arguments = ["rogue", how.name(), name, "--seconds", "30"];
+        self.stage.start(&self.programs.ourselves, &arguments)
+    }
+
+    /// Waits until the daemon answers and its body is free.
+    pub(crate) fn wait_until_free(&self, daemon: &Player) -> Result<(), String> {
+        wait_for("the body is free", || self.stage.is_free()).map_err(|e| {
+            let halt = self.stage.status()["halt"].to_string();
+            format!("{e}; it stands {halt}, the daemon said {:?}", daemon.said())
+        })
+    }
+
+    /// Tries a fault that must not halt the body: the daemon with its body inside goes on.
+    pub(crate) fn goes_on(
+        &mut self,
+        fault: impl FnOnce(&mut Trial) -> Result<(), String>,
+    ) -> Result<(), String> {
+        let daemon = self.daemon(&[])?;
+        self.goes_on_with(daemon, fault)
+    }
+
+    /// The same with a daemon that was started in another way.
+    pub(crate) fn goes_on_with(
+        &mut self,
+        mut daemon: Player,
+        fault: impl FnOnce(&mut Trial) -> Result<(), String>,
+    ) -> Result<(), String> {
+        let observer = Observer::of_the_host()?;
+        self.wait_a_while();
+        let before = self.stage.status();
+        fault(self)?;
+        // Two looks of the daemon's own watcher: what the fault did is in its status.
+        clock::sleep_until(clock::monotonic() + Span::millis(250));
+        let after = self.stage.status();
+        self.outcome.host_late = observer.late();
+        self.outcome.inspect(&after);
+        self.outcome.expect_no_halt(&before, &after);
+        let (was, is) = (beats_of_level_0(&before), beats_of_level_0(&after));
+        // It beats every 10 ms; ten beats of the 25 and more that are due.
+        self.outcome.expect(is > was + 10, || {
+            format!("level 0 beat {was} times before, {is} after")
+        });
+        self.outcome
+            .expect(self.stage.is_free(), || "the body does not stay free".into());
+        self.end(&mut daemon)
+    }
+
+    /// Ends a daemon in good order.
+    pub(crate) fn end(&mut self, daemon: &mut Player) -> Result<(), String> {
+        if let Err(trouble) = daemon.leave() {
+            self.outcome.broken.push(trouble);
+        }
+        Ok(())
+    }
+
+    /// Notes the time from `fault` to `halted`, which may take `bound`.
+    pub(crate) fn halted(&mut self, fault: Time, halted: Option<Time>, bound: Span) {
+        self.outcome.halted = halted.map(|at| at.since(fault));
+        self.outcome.bound = Some(bound);
+        self.outcome.period = Some(self.limits.period);
+    }
+
+    /// Starts the daemon again after a death, with the body process that saw it, and looks whether all is well.
+    pub(crate) fn restart(&mut self) -> Result<(), String> {
+        let began = clock::monotonic();
+        let mut daemon = self.daemon(&["--body", BODY])?;
+        self.outcome.restart = Some(clock::monotonic().since(began));
+        wait_for("the body tells how it looks", || {
+            self.stage.status()["contacts"].is_object()
+        })?;
+        self.outcome.inspect(&self.stage.status());
+        self.end(&mut daemon)
+    }
+
+    /// Sends the daemon that answers a signal.
+    pub(crate) fn signal_daemon(&self, signal: Signal) -> Result<(), String> {
+        let pid = self.stage.status()["pid"]
+            .as_i64()
+            .and_then(|pid| i32::try_from(pid).ok());
+        let pid = pid.and_then(Pid::from_raw).ok_or("the status names no process")?;
+        kill_process(pid, signal).map_err(|e| format!("a signal: {e}"))
+    }
+
+    /// Asks the daemon for an emergency stop.
+    pub(crate) fn emergency_stop(&self) -> Result<(), String> {
+        match self.stage.ask(&Request::Halt) {
+            Some(ipc::control::Reply::Done) => Ok(()),
+            other => Err(format!("a halt was answered with {other:?}")),
+        }
+    }
+}
+
+fn beats_of_level_0(status: &Value) -> u64 {
+    let layers = status["layers"].as_array().into_iter().flatten();
+    let mut level_0 = layers.filter(|l| l["level"] == 0);
+    level_0.next().and_then(|l| l["beats"].as_u64()).unwrap_or(0)
+}
+
+/// Brings a body process to its end in good order.
+pub(crate) fn leave_body(trial: &mut Trial, body: &mut Player) {
+    if let Err(trouble) = body.leave() {
+        trial.outcome.broken.push(trouble);
+    }
+}
