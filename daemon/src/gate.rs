@@ -52,6 +52,11 @@ impl Causes {
     /// Causes that stay until reset.
     pub const LATCHED: Causes = Causes(16 | 32 | 64 | 128);
 
+    /// Every cause with its name, in the order of its bit.
+    pub fn all() -> impl Iterator<Item = (Causes, &'static str)> {
+        NAMES.into_iter()
+    }
+
     /// Both sets together.
     #[must_use]
     pub const fn with(self, other: Causes) -> Causes {
@@ -162,12 +167,18 @@ impl Gate {
             self.latched = self.latched.with(Causes::VITAL);
         }
         causes = causes.with(self.latched);
-        let passage = match causes {
+        (causes, Passage::for_causes(causes))
+    }
+}
+
+impl Passage {
+    /// What passes while the gate is closed for `causes`.
+    pub const fn for_causes(causes: Causes) -> Passage {
+        match causes {
             Causes::NONE => Passage::Open,
             Causes::REFLEX => Passage::NoForward,
             _ => Passage::Closed,
-        };
-        (causes, passage)
+        }
     }
 }
 

@@ -11,6 +11,8 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use afsm::assemble::{FiledTap, Wires, join};
+use afsm::layer::trace_registers;
+use afsm::trace::Tracer;
 use ipc::clock::{Span, Time};
 use ipc::message::{WORDS_MAX, Words};
 use ipc::wire::{Reader, Register, Writer};
@@ -31,7 +33,12 @@ pub struct HaltChannel {
     decided: AtomicU64,
     /// When that last changed.
     since: AtomicU64,
+    /// How often each cause came up, in the order of its bit.
+    counts: [AtomicU64; CAUSES],
 }
+
+/// How many causes there are.
+const CAUSES: usize = 8;
 
 impl Default for HaltChannel {
     /// Nothing is latched; the gate has not opened yet.
@@ -41,6 +48,7 @@ impl Default for HaltChannel {
             resets: AtomicU64::new(0),
             decided: AtomicU64::new(Causes::START.0),
             since: AtomicU64::new(0),
+            counts: std::array::from_fn(|_| AtomicU64::new(0)),
         }
     }
 }
@@ -66,6 +74,13 @@ impl HaltChannel {
         Ok(())
     }
 
+    /// How often each cause came up, by its name.
+    pub fn counts(&self) -> impl Iterator<Item = (&'static str, u64)> {
+        Causes::all()
+            .zip(&self.counts)
+            .map(|((_, name), count)| (name, count.load(Ordering::Relaxed)))
+    }
+
     /// The causes for which the gate is closed, and since when.
     pub fn decided(&self) -> (Causes, Time) {
         (
@@ -89,7 +104,7 @@ pub struct Motor {
     kind: &'static BodyKind,
     registers: Vec<Register>,
     faults: u64,
-    sensors: Vec<(Reader, Writer, u64)>,
+    sensors: Vec<Sensor>,
     commands: Vec<Writer>,
     passed: Vec<Words>,
     reflexes: Vec<Reader>,
@@ -98,6 +113,17 @@ pub struct Motor {
     channel: Arc<HaltChannel>,
     resets: u64,
     period: Span,
+    causes: Causes,
+    tracer: Option<Tracer>,
+}
+
+/// A sensor: from the link to its wire.
+#[derive(Debug)]
+struct Sensor {
+    link: Reader,
+    seen: u64,
+    wire: Writer,
+    written: u64,
 }
 
 /// Beats that a vital layer may miss before the body halts: one is a hiccup of the host, two are a fault.
@@ -146,7 +172,12 @@ impl Motor {
             .sensors
             .into_iter()
             .zip(sensors)
-            .map(|(reader, writer)| (reader, writer, 0))
+            .map(|(link, wire)| Sensor {
+                link,
+                seen: 0,
+                wire,
+                written: 0,
+            })
             .collect();
         let vital = creature
             .layers
@@ -177,6 +208,8 @@ impl Motor {
             channel,
             resets: 0,
             period: body.period,
+            causes: Causes::NONE,
+            tracer: None,
         }
     }
 
@@ -185,11 +218,27 @@ impl Motor {
         self.period
     }
 
+    /// Traces every beat from now on.
+    pub fn trace(&mut self, tracer: Tracer) {
+        self.tracer = Some(tracer);
+    }
+
+    /// How many inputs and outputs the body has.
+    pub fn ports(&self) -> (usize, usize) {
+        (self.registers.len(), self.sensors.len())
+    }
+
     /// First half of a beat: looks at every command.
     pub fn gather(&mut self, now: Time) {
+        if let Some(tracer) = &mut self.tracer {
+            tracer.begin(now);
+        }
         for register in &mut self.registers {
             // Taps of the creature file never leave, so there is none to give back.
             register.gather(now, std::mem::forget);
+        }
+        if let Some(tracer) = &mut self.tracer {
+            trace_registers(tracer, &self.registers);
         }
     }
 
@@ -198,40 +247,42 @@ impl Motor {
         let seen = self.look(now);
         let (causes, passage) = self.gate.decide(&seen);
         self.show(causes, now);
+        if let Some(tracer) = &mut self.tracer {
+            tracer.causes(causes.0);
+        }
         for (index, register) in self.registers.iter().enumerate() {
             let motion = self.kind.motion.contains(&index);
             let words = match register.held() {
-                Some((_, words)) if motion => self.gated(index, *words, passage),
+                Some((_, words)) if motion => gated(self.kind, index, *words, passage),
                 Some((_, words)) if register.arrived() => *words,
                 _ if motion => [0.0; WORDS_MAX],
                 _ => continue,
             };
             self.passed[index] = words;
             self.commands[index].write(now, &words);
-        }
-        for (reader, writer, number) in &mut self.sensors {
-            if let Some(reading) = reader.newer_than(*number) {
-                *number = reading.number;
-                writer.write(now, &reading.words);
+            if let Some(tracer) = &mut self.tracer {
+                tracer.passed(index, &words[..self.kind.declaration.inputs[index].kind.words()]);
             }
+        }
+        for (slot, sensor) in self.sensors.iter_mut().enumerate() {
+            let Some(reading) = sensor.link.newer_than(sensor.seen) else {
+                continue;
+            };
+            sensor.seen = reading.number;
+            sensor.wire.write(now, &reading.words);
+            sensor.written += 1;
+            if let Some(tracer) = &mut self.tracer {
+                tracer.wrote(slot, sensor.written, &reading.words[..sensor.wire.kind().words()]);
+            }
+        }
+        if let Some(tracer) = &mut self.tracer {
+            tracer.end(now);
         }
     }
 
     /// What the body is told on input `index`, for tests and watchers.
     pub fn passed(&self, index: usize) -> f64 {
         self.passed[index][0]
-    }
-
-    fn gated(&self, index: usize, mut words: Words, passage: Passage) -> Words {
-        match passage {
-            Passage::Open => words,
-            Passage::NoForward if self.kind.forward == Some(index) => {
-                words[0] = words[0].min(0.0);
-                words
-            }
-            Passage::NoForward => words,
-            Passage::Closed => [0.0; WORDS_MAX],
-        }
     }
 
     fn look(&mut self, now: Time) -> Seen {
@@ -274,12 +325,32 @@ impl Motor {
         }
     }
 
-    fn show(&self, causes: Causes, now: Time) {
-        if self.channel.decided.load(Ordering::Relaxed) != causes.0
-            || self.channel.since.load(Ordering::Relaxed) == 0
-        {
-            self.channel.decided.store(causes.0, Ordering::Relaxed);
-            self.channel.since.store(now.0.max(1), Ordering::Relaxed);
+    fn show(&mut self, causes: Causes, now: Time) {
+        let channel = &self.channel;
+        if self.causes != causes || channel.since.load(Ordering::Relaxed) == 0 {
+            let new = causes.without(self.causes);
+            for ((cause, _), count) in Causes::all().zip(&channel.counts) {
+                if new.has(cause) {
+                    // Only this thread counts; the numbers are to look at.
+                    count.store(count.load(Ordering::Relaxed) + 1, Ordering::Relaxed);
+                }
+            }
+            self.causes = causes;
+            channel.decided.store(causes.0, Ordering::Relaxed);
+            channel.since.store(now.0.max(1), Ordering::Relaxed);
         }
+    }
+}
+
+/// What of a command to input `index` of a body of this kind gets through the gate.
+pub fn gated(kind: &BodyKind, index: usize, mut words: Words, passage: Passage) -> Words {
+    match passage {
+        Passage::Open => words,
+        Passage::NoForward if kind.forward == Some(index) => {
+            words[0] = words[0].min(0.0);
+            words
+        }
+        Passage::NoForward => words,
+        Passage::Closed => [0.0; WORDS_MAX],
     }
 }

@@ -60,6 +60,16 @@ struct State {
     attached: Vec<Attached>,
     last: u32,
     version: u64,
+    /// Number of the newest tap, those of the creature file included.
+    tap: u16,
+}
+
+impl State {
+    /// The next tap's number. It comes round after 65,535 taps; one that old has long left.
+    fn tap_number(&mut self) -> u16 {
+        self.tap = self.tap.checked_add(1).unwrap_or(1);
+        self.tap
+    }
 }
 
 impl Plugs {
@@ -81,9 +91,11 @@ impl Plugs {
                 }
             }
         }
+        let filed: usize = creature.layers.iter().map(|l| l.taps.len()).sum();
         let state = Mutex::new(State {
             hands,
             version: 1,
+            tap: filed as u16,
             ..State::default()
         });
         Plugs {
@@ -196,7 +208,7 @@ impl Plugs {
             .position(|o| o.name == tap.from)
             .expect("checked");
         let reader = page.reader(index, plug.outputs[index].kind).expect("checked");
-        let gauge = Arc::new(TapGauge::default());
+        let gauge = Arc::new(TapGauge::numbered(state.tap_number()));
         let end = TapEnd {
             reader: reader.clone(),
             time_constant: tap.time_constant,

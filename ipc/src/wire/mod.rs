@@ -10,9 +10,11 @@ pub mod iceoryx;
 pub mod outlet;
 pub mod page;
 pub mod register;
+pub mod side_tap;
 mod sync;
 
 pub use cell::{LAYOUT, Reading};
 pub use outlet::{Outlet, OutputCounts};
 pub use page::{Page, Reader, WIRES_MAX, Writer};
-pub use register::{InputCounts, Limits, Plug, Register, TAPS_MAX, TapCounts, TapEnd, TapGauge, TapState};
+pub use register::{InputCounts, Limits, Register};
+pub use side_tap::{Fate, Plug, TAPS_MAX, TapCounts, TapEnd, TapGauge, TapLook, TapState};

@@ -8,9 +8,9 @@
 //! ```
 
 use super::page::Writer;
-use super::register::{Joined, Plug, TAPS_MAX, TapEnd, TapState, join, release, sweep};
+use super::side_tap::{Joined, Plug, TAPS_MAX, TapEnd, TapLook, TapState, join, release, sweep};
 use crate::clock::Time;
-use crate::message::Words;
+use crate::message::{Kind, Words};
 use crate::tap;
 
 /// What was counted at one output.
@@ -95,6 +95,21 @@ impl Outlet {
             self.counts.emitted += 1;
         }
         open
+    }
+
+    /// The message waiting for the end of the beat.
+    pub fn staged(&self) -> Option<&Words> {
+        self.staged.as_ref()
+    }
+
+    /// The kind of message on the wire.
+    pub fn kind(&self) -> Kind {
+        self.writer.kind()
+    }
+
+    /// The messages of inhibitors that the last [`Outlet::commit`] took in, for those who trace.
+    pub fn tap_looks(&self) -> impl Iterator<Item = TapLook<'_>> {
+        self.taps.iter().filter_map(Joined::look_taken)
     }
 
     /// What was counted so far.

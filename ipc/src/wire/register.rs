@@ -7,150 +7,11 @@
 //!   existing wire ──► (S level 1) ──► (S level 1, declared later) ──► (S level 2) ──► register ──► module
 //! ```
 
-use std::sync::Arc;
-use std::sync::atomic::{AtomicU64, Ordering};
-
 use super::page::Reader;
-use crate::clock::{Span, Time};
-use crate::message::{Kind, WORDS_MAX, Words};
-use crate::tap::{self, Window};
-
-/// Most suppressors on one input, and inhibitors on one output: one for each level above it and then
-/// some; the source's largest stack has fourteen layers (Brooks 1991 §8.2).
-pub const TAPS_MAX: usize = 16;
-
-/// How far ahead of the beat a stamp may lie: all clocks are one clock, so only the time the beat itself
-/// has been running counts, and a beat that ran longer than this was an overrun of any sensible period.
-pub const AHEAD_MAX: Span = Span::millis(100);
-
-/// Who a tap belongs to: 0 for the creature file itself, else the number of the plugged layer.
-pub type Plug = u32;
-
-/// A tap as it is joined to a port.
-#[derive(Debug)]
-pub struct TapEnd {
-    /// Where its messages come from.
-    pub reader: Reader,
-    /// Its time constant τ.
-    pub time_constant: Span,
-    /// Level of the layer it comes from.
-    pub level: u8,
-    /// Whose it is.
-    pub plug: Plug,
-    /// Where what happens at it is counted, for those who watch.
-    pub gauge: Arc<TapGauge>,
-}
-
-/// Counters of a tap that other threads may look at.
-#[derive(Debug, Default)]
-pub struct TapGauge {
-    delivered: AtomicU64,
-    rejected: AtomicU64,
-    faults: AtomicU64,
-}
-
-impl TapGauge {
-    /// What was counted so far.
-    pub fn counts(&self) -> TapCounts {
-        // Relaxed: numbers to look at; nothing hangs on their order.
-        TapCounts {
-            delivered: self.delivered.load(Ordering::Relaxed),
-            rejected: self.rejected.load(Ordering::Relaxed),
-            faults: self.faults.load(Ordering::Relaxed),
-        }
-    }
-}
-
-/// Counts one more. Only the thread that owns the port counts, so load and store need not be one step.
-fn count(counter: &AtomicU64) {
-    counter.store(counter.load(Ordering::Relaxed) + 1, Ordering::Relaxed);
-}
-
-/// What was counted at one tap.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct TapCounts {
-    /// Messages of the tap that took effect.
-    pub delivered: u64,
-    /// Messages of the wire that the tap's windows rejected or dropped.
-    pub rejected: u64,
-    /// Messages of the tap that were no message: not a number, out of range, or stamped in the future.
-    pub faults: u64,
-}
-
-/// A tap with what was last seen of it.
-#[derive(Debug)]
-pub(super) struct Joined {
-    pub(super) end: TapEnd,
-    pub(super) seen: u64,
-    pub(super) window: Option<Window>,
-    pub(super) words: Words,
-    /// Whether its newest message came in at the last look.
-    pub(super) fresh: bool,
-    /// Told to go; stays until its window has run out, so that nothing rejected comes back to life.
-    pub(super) leaving: bool,
-}
-
-impl Joined {
-    pub(super) fn new(end: TapEnd) -> Joined {
-        // A message written before the tap was joined has no effect: the wire was not tapped then.
-        let seen = end.reader.read().map_or(0, |r| r.number);
-        Joined {
-            end,
-            seen,
-            window: None,
-            words: [0.0; WORDS_MAX],
-            fresh: false,
-            leaving: false,
-        }
-    }
-
-    /// Takes in the tap's newest message if there is one that was not seen.
-    pub(super) fn look(&mut self, now: Time, limits: Option<&Limits>) {
-        self.fresh = false;
-        if self.leaving {
-            return;
-        }
-        let Some(reading) = self.end.reader.newer_than(self.seen) else {
-            return;
-        };
-        self.seen = reading.number;
-        let newest = self.window.map_or(Time::ZERO, |w| w.stamp);
-        let stamp = match plausible(reading.stamp, now) {
-            Some(stamp) if stamp >= newest && limits.is_none_or(|l| l.accept(&reading.words)) => stamp,
-            _ => {
-                count(&self.end.gauge.faults);
-                return;
-            }
-        };
-        self.window = Some(Window {
-            stamp,
-            time_constant: self.end.time_constant,
-        });
-        self.words = reading.words;
-        self.fresh = true;
-    }
-
-    /// Counts a message of the wire that this tap's window kept out.
-    pub(super) fn reject(&self) {
-        count(&self.end.gauge.rejected);
-    }
-
-    /// Counts a message of the tap that took effect.
-    pub(super) fn take_effect(&self) {
-        count(&self.end.gauge.delivered);
-    }
-
-    pub(super) fn state(&self) -> TapState {
-        TapState {
-            window: self.window,
-            counts: self.end.gauge.counts(),
-        }
-    }
-
-    pub(super) fn gone(&self, now: Time) -> bool {
-        self.leaving && self.window.is_none_or(|w| now >= w.stamp + w.time_constant)
-    }
-}
+use super::side_tap::{Fate, Joined, Plug, TAPS_MAX, TapEnd, TapLook, TapState, join, plausible, release, sweep};
+use crate::clock::Time;
+use crate::message::{Kind, Words};
+use crate::tap;
 
 /// What an input port takes: kind and range of every number.
 #[derive(Clone, Copy, Debug)]
@@ -164,7 +25,7 @@ pub struct Limits {
 }
 
 impl Limits {
-    fn accept(&self, words: &Words) -> bool {
+    pub(super) fn accept(&self, words: &Words) -> bool {
         self.kind.accepts(words, self.low, self.high)
     }
 }
@@ -189,6 +50,7 @@ pub struct Register {
     taps: Vec<Joined>,
     held: Option<(Time, Words)>,
     arrived: bool,
+    looked: Option<(u64, Fate)>,
     counts: InputCounts,
 }
 
@@ -202,6 +64,7 @@ impl Register {
             taps: Vec::with_capacity(TAPS_MAX),
             held: None,
             arrived: false,
+            looked: None,
             counts: InputCounts::default(),
         }
     }
@@ -221,6 +84,7 @@ impl Register {
     /// has left for good, to be dropped on a thread that may.
     pub fn gather(&mut self, now: Time, gone: impl FnMut(TapEnd)) {
         self.arrived = false;
+        self.looked = None;
         let original = self.look(now);
         if self.taps.is_empty() {
             if let Some((stamp, words)) = original {
@@ -241,6 +105,7 @@ impl Register {
                 newest = Some((stamp, words));
             } else {
                 self.counts.rejected += 1;
+                self.looked = self.looked.map(|(number, _)| (number, Fate::Rejected));
             }
         }
         for k in 0..self.taps.len() {
@@ -300,8 +165,12 @@ impl Register {
         let reading = self.wire.as_ref()?.newer_than(self.seen)?;
         self.seen = reading.number;
         match plausible(reading.stamp, now) {
-            Some(stamp) if self.limits.accept(&reading.words) => Some((stamp, reading.words)),
+            Some(stamp) if self.limits.accept(&reading.words) => {
+                self.looked = Some((reading.number, Fate::Delivered));
+                Some((stamp, reading.words))
+            }
             _ => {
+                self.looked = Some((reading.number, Fate::Fault));
                 self.counts.faults += 1;
                 None
             }
@@ -341,6 +210,17 @@ impl Register {
         self.arrived
     }
 
+    /// The message of the existing wire that the last [`Register::gather`] took in, by its number, and what
+    /// became of it; for those who trace.
+    pub fn looked(&self) -> Option<(u64, Fate)> {
+        self.looked
+    }
+
+    /// The messages of taps that the last [`Register::gather`] took in, for those who trace.
+    pub fn tap_looks(&self) -> impl Iterator<Item = TapLook<'_>> {
+        self.taps.iter().filter_map(Joined::look_taken)
+    }
+
     /// Forgets the message held: what a reset line does.
     pub fn clear(&mut self) {
         self.held = None;
@@ -355,52 +235,5 @@ impl Register {
     /// The taps as they stand in series, for those who watch.
     pub fn taps(&self) -> impl Iterator<Item = TapState> {
         self.taps.iter().map(Joined::state)
-    }
-}
-
-/// A tap as it stands, for those who watch.
-#[derive(Clone, Copy, Debug)]
-pub struct TapState {
-    /// Its newest message's window.
-    pub window: Option<Window>,
-    /// What was counted.
-    pub counts: TapCounts,
-}
-
-/// The stamp of a message read at `now`: never later than `now` (it was written while this beat was
-/// already under way), or `None` if it lies so far ahead that its writer's clock is wrong.
-fn plausible(stamp: Time, now: Time) -> Option<Time> {
-    (stamp <= now + AHEAD_MAX).then(|| stamp.min(now))
-}
-
-/// Joins `end` after taps of lower or equal level; gives it back when there is no room.
-pub(super) fn join(taps: &mut Vec<Joined>, end: TapEnd) -> Result<(), TapEnd> {
-    if taps.len() == TAPS_MAX {
-        return Err(end);
-    }
-    let place = taps
-        .iter()
-        .position(|t| t.end.level > end.level)
-        .unwrap_or(taps.len());
-    taps.insert(place, Joined::new(end));
-    Ok(())
-}
-
-/// Tells the taps of `plug` to go.
-pub(super) fn release(taps: &mut [Joined], plug: Plug) {
-    for tap in taps.iter_mut().filter(|t| t.end.plug == plug) {
-        tap.leaving = true;
-    }
-}
-
-/// Hands over the taps that have left and whose windows have run out.
-pub(super) fn sweep(taps: &mut Vec<Joined>, now: Time, mut gone: impl FnMut(TapEnd)) {
-    let mut k = 0;
-    while k < taps.len() {
-        if taps[k].gone(now) {
-            gone(taps.remove(k).end);
-        } else {
-            k += 1;
-        }
     }
 }

@@ -12,10 +12,12 @@ use std::ops::Range;
 
 use ipc::clock::Time;
 use ipc::wire::{Outlet, Register, TapEnd};
+use ipc::wiring::creature::How;
 use rtrb::{Consumer, Producer};
 
 use crate::kind::ModuleKind;
 use crate::module::{Beat, Module};
+use crate::trace::Tracer;
 
 /// A change to a running layer's taps, made by a thread that is not real-time.
 #[derive(Debug)]
@@ -59,6 +61,7 @@ pub struct RunningLayer {
     outlets: Vec<Outlet>,
     commands: Consumer<Command>,
     returned: Producer<TapEnd>,
+    tracer: Option<Tracer>,
 }
 
 impl std::fmt::Debug for RunningLayer {
@@ -79,6 +82,7 @@ impl RunningLayer {
             outlets: Vec::new(),
             commands: command_out,
             returned: return_in,
+            tracer: None,
         };
         (
             layer,
@@ -137,6 +141,16 @@ impl RunningLayer {
         self.order = order;
     }
 
+    /// Traces every beat from now on.
+    pub fn trace(&mut self, tracer: Tracer) {
+        self.tracer = Some(tracer);
+    }
+
+    /// How many registers and outlets there are.
+    pub fn ports(&self) -> (usize, usize) {
+        (self.registers.len(), self.outlets.len())
+    }
+
     /// How many modules there are.
     pub fn len(&self) -> usize {
         self.seats.len()
@@ -157,6 +171,9 @@ impl RunningLayer {
 
     /// First half of a beat: takes up commands, looks at every register, steps every module.
     pub fn step(&mut self, now: Time) {
+        if let Some(tracer) = &mut self.tracer {
+            tracer.begin(now);
+        }
         while let Ok(command) = self.commands.pop() {
             self.obey(command);
         }
@@ -187,16 +204,35 @@ impl RunningLayer {
                 outputs: &mut self.outlets[outputs.clone()],
             });
         }
+        if let Some(tracer) = &mut self.tracer {
+            trace_registers(tracer, &self.registers);
+        }
     }
 
     /// Second half of a beat: writes what was emitted, stamped `now`, unless inhibited.
     pub fn commit(&mut self, now: Time) {
-        for outlet in &mut self.outlets {
-            outlet.commit(now, |end| give_back(&mut self.returned, end));
+        for (slot, outlet) in self.outlets.iter_mut().enumerate() {
+            let staged = outlet.staged().copied();
+            let wrote = outlet.commit(now, |end| give_back(&mut self.returned, end));
+            let Some(tracer) = &mut self.tracer else { continue };
+            outlet.tap_looks().for_each(|look| tracer.tap(&look));
+            match staged {
+                Some(words) if wrote => {
+                    tracer.wrote(slot, outlet.counts().emitted, &words[..outlet.kind().words()]);
+                }
+                Some(_) => tracer.dropped(slot),
+                None => {}
+            }
+        }
+        if let Some(tracer) = &mut self.tracer {
+            tracer.end(now);
         }
     }
 
     fn obey(&mut self, command: Command) {
+        if let Some(tracer) = &mut self.tracer {
+            trace_command(tracer, &command);
+        }
         let refused = match command {
             Command::Suppress(input, end) if input < self.registers.len() => {
                 self.connect_reset(input);
@@ -224,6 +260,25 @@ impl RunningLayer {
             seat.reset = true;
         }
     }
+}
+
+/// Traces what the registers took in at this beat.
+pub fn trace_registers(tracer: &mut Tracer, registers: &[Register]) {
+    for (slot, register) in registers.iter().enumerate() {
+        if let Some((number, fate)) = register.looked() {
+            tracer.saw(slot, number, fate);
+        }
+        register.tap_looks().for_each(|look| tracer.tap(&look));
+    }
+}
+
+fn trace_command(tracer: &mut Tracer, command: &Command) {
+    let (slot, end, how) = match command {
+        Command::Suppress(slot, end) => (slot, end, How::Suppress),
+        Command::Inhibit(slot, end) => (slot, end, How::Inhibit),
+        Command::Release(plug) => return tracer.released(*plug),
+    };
+    tracer.joined(*slot, end.gauge.number(), how, end.level, end.plug, end.time_constant);
 }
 
 /// Hands a tap to the thread that may drop it. The ring has room for every tap there can be, so the tap is
