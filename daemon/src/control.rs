@@ -12,9 +12,12 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::thread::JoinHandle;
 use std::time::Duration;
 
+use ipc::clock::Span;
 use ipc::control::{Connection, Reply, Request, Versions, run_dir, socket_path};
 
 use crate::gate::Causes;
+use crate::recorder::listener::{self, Wanted};
+use crate::recorder::Begin;
 use crate::running::Shared;
 
 /// Most callers at once: as many layers as may attach, and as many tools.
@@ -175,10 +178,44 @@ fn converse(connection: &mut Connection, shared: &Shared, plugged: &mut Option<u
                 Err(reasons) => Reply::Refused { reasons },
             },
             Request::Unplug => return Ok(Farewell::Said),
+            Request::Record { past, seconds, ring } => {
+                connection.send(&Reply::Recording)?;
+                record(connection, shared, past, seconds, ring)?;
+                return Ok(Farewell::Said);
+            }
             other => answer(other, shared),
         };
         connection.send(&reply)?;
     }
+}
+
+/// Records into the connection until the caller closes its direction of it.
+fn record(
+    connection: &Connection,
+    shared: &Shared,
+    past: bool,
+    seconds: Option<f64>,
+    ring: Option<Span>,
+) -> io::Result<()> {
+    let socket = connection.socket().try_clone()?;
+    let end = Arc::new(AtomicBool::new(false));
+    let (mut other_end, told) = (socket.try_clone()?, end.clone());
+    other_end.set_read_timeout(None)?;
+    let listen = move || {
+        let mut byte = [0];
+        while matches!(io::Read::read(&mut other_end, &mut byte), Ok(1..)) {}
+        told.store(true, Ordering::Relaxed);
+    };
+    let ear = std::thread::Builder::new().name("ear".into()).stack_size(64 << 10).spawn(listen)?;
+    let wanted = Wanted {
+        begin: if past { Begin::Past } else { Begin::Now },
+        length: seconds.and_then(|s| Duration::try_from_secs_f64(s).ok()),
+        ring,
+    };
+    let recorded = listener::record(&shared.recorder, wanted, io::BufWriter::new(&socket), &end);
+    let _ = socket.shutdown(std::net::Shutdown::Both);
+    let _ = ear.join();
+    recorded.map(drop).map_err(io::Error::other)
 }
 
 fn greet(theirs: &Versions, program: &str, shared: &Shared) -> Reply {
@@ -220,7 +257,7 @@ fn answer(request: Request, shared: &Shared) -> Reply {
                 reasons: vec![reason],
             },
         },
-        Request::Hello { .. } | Request::Plug(_) | Request::Unplug => Reply::Refused {
+        Request::Hello { .. } | Request::Plug(_) | Request::Unplug | Request::Record { .. } => Reply::Refused {
             reasons: vec!["not now".into()],
         },
     }

@@ -1,7 +1,6 @@
 //! `subsumed`: runs a creature.
 
 use std::net::SocketAddr;
-use std::path::PathBuf;
 use std::process::ExitCode;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -10,6 +9,7 @@ use std::time::{Duration, Instant};
 use clap::Parser;
 use daemon::control::{self, Control};
 use daemon::machine::{Machine, kinds};
+use daemon::options::Options;
 use daemon::running::{self, Running};
 use daemon::view::View;
 use ipc::wire::iceoryx::Domain;
@@ -20,52 +20,16 @@ use ipc::wiring::{Source, check};
 #[global_allocator]
 static ALLOCATOR: daemon::alloc::Counting = daemon::alloc::Counting;
 
-/// Runs a subsumption creature on real-time threads, with its wires in shared memory.
-#[derive(Parser, Debug)]
-#[command(
-    version,
-    after_help = "Examples:\n  \
-    subsumed                                the built-in creature Allen in its office\n  \
-    subsumed --creature mine.toml           a creature of your own\n  \
-    subsumed --headless --seconds 60        one minute, nothing to look at\n  \
-    subsumed --name jerry --page-port 0     a second instance beside the first\n\n\
-    Ctrl-C halts the body, then leaves.\n\
-    Status: 0 after a signal or --seconds; 1 when the host refuses; 2 for bad input."
-)]
-struct Options {
-    /// The creature file; without it, Allen
-    #[arg(long, value_name = "FILE")]
-    creature: Option<PathBuf>,
-    /// Name of this instance; the creature's own if not given
-    #[arg(long)]
-    name: Option<String>,
-    /// Port of the live page on 127.0.0.1; 0 for any that is free
-    #[arg(long, default_value_t = 4686, value_name = "N")]
-    page_port: u16,
-    /// No live page
-    #[arg(long)]
-    no_page: bool,
-    /// Nothing to look at: no page, and only warnings on the terminal
-    #[arg(long)]
-    headless: bool,
-    /// Leave after N seconds
-    #[arg(long, value_name = "N")]
-    seconds: Option<f64>,
-    /// Seed of everything random, instead of the creature file's
-    #[arg(long, value_name = "N")]
-    seed: Option<u64>,
-}
-
 fn main() -> ExitCode {
     let options = Options::parse();
-    let creature = match load(&options) {
-        Ok(creature) => creature,
+    let (creature, file) = match load(&options) {
+        Ok(loaded) => loaded,
         Err(message) => {
             eprintln!("{message}");
             return ExitCode::from(2);
         }
     };
-    match run(&options, creature) {
+    match run(&options, creature, file) {
         Ok(()) => ExitCode::SUCCESS,
         Err(message) => {
             eprintln!("subsumed: {message}");
@@ -74,8 +38,8 @@ fn main() -> ExitCode {
     }
 }
 
-/// Reads and checks the creature file.
-fn load(options: &Options) -> Result<Creature, String> {
+/// Reads and checks the creature file; gives its text as well.
+fn load(options: &Options) -> Result<(Creature, String), String> {
     let source = match &options.creature {
         None => Source::new("allen.toml (built in)", allen::CREATURE),
         Some(path) => {
@@ -102,11 +66,11 @@ fn load(options: &Options) -> Result<Creature, String> {
     if options.seconds.is_some_and(|s| !s.is_finite() || s <= 0.0) {
         return Err("--seconds: expected a number of seconds above zero".into());
     }
-    Ok(creature)
+    Ok((creature, source.text))
 }
 
 /// Runs the creature until a signal comes or the time is over.
-fn run(options: &Options, creature: Creature) -> Result<(), String> {
+fn run(options: &Options, creature: Creature, file: String) -> Result<(), String> {
     let leave = Arc::new(AtomicBool::new(false));
     for signal in [signal_hook::consts::SIGTERM, signal_hook::consts::SIGINT] {
         signal_hook::flag::register(signal, leave.clone()).map_err(|e| format!("signal {signal}: {e}"))?;
@@ -118,8 +82,9 @@ fn run(options: &Options, creature: Creature) -> Result<(), String> {
         .own(&name, output_ports(&creature).count())
         .map_err(|e| e.to_string())?;
     let machine = Machine::new(creature, &kinds(), owned.page().clone(), None);
-    let running =
-        running::start(&name, machine, owned, domain).map_err(|e| format!("starting threads: {e}"))?;
+    let settings = options.recorder(file);
+    let running = running::start(&name, machine, owned, domain, &settings)
+        .map_err(|e| format!("starting threads and recordings: {e}"))?;
     let control =
         Control::open(&name, running.shared.clone()).map_err(|e| format!("the control socket: {e}"));
     let page = serve_page(options, &running);

@@ -12,10 +12,12 @@ use std::thread::JoinHandle;
 use std::time::Duration;
 
 use afsm::layer::RunningLayer;
+use afsm::trace::{self, Trace, Tracer};
 use ipc::clock::{self, Span, Time};
 use ipc::wire::iceoryx::{Domain, OwnedPage};
 use ipc::wiring::creature::{Creature, Overrun};
 use ipc::wiring::directory::{Directory, output_ports};
+use recording::Manifest;
 use serde_json::{Value, json};
 
 use crate::alloc;
@@ -26,6 +28,7 @@ use crate::gate::Causes;
 use crate::machine::{Embodied, Machine};
 use crate::motor::{HaltChannel, Motor};
 use crate::plugs::Plugs;
+use crate::recorder::{self, Feed, Recorder};
 use crate::status::{self, Rates, Record, Watched, WatchedTap};
 
 /// Priority of the motor unit; layers come below it, the shorter the period the higher. Above what ordinary
@@ -48,6 +51,8 @@ pub struct Shared {
     pub domain: Domain,
     /// What of the world does not change.
     pub floor: Value,
+    /// What happens, for those who record it.
+    pub recorder: Recorder,
     status: Mutex<Arc<Value>>,
 }
 
@@ -93,11 +98,17 @@ impl Beats for MotorBeats {
     }
 }
 
-/// Starts `machine`, whose wires are in `owned`, as `name`.
+/// Starts `machine`, whose wires are in `owned`, as `name`, and records it as `settings` say.
 ///
 /// # Errors
-/// When the host refuses a thread.
-pub fn start(name: &str, machine: Machine, owned: OwnedPage, domain: Domain) -> std::io::Result<Running> {
+/// When the host refuses a thread, or the file to record into.
+pub fn start(
+    name: &str,
+    machine: Machine,
+    owned: OwnedPage,
+    domain: Domain,
+    settings: &recorder::Settings,
+) -> std::io::Result<Running> {
     let began = clock::monotonic();
     let events = Arc::new(Events::new(began));
     let Machine {
@@ -111,6 +122,8 @@ pub fn start(name: &str, machine: Machine, owned: OwnedPage, domain: Domain) -> 
     } = machine;
     let directory = Directory::of(&creature, name);
     let floor = body.as_ref().map_or(Value::Null, |b| b.world.floor());
+    let causes = Causes::all().map(|(_, name)| name.to_string()).collect();
+    let manifest = Manifest::of(&creature, name, &settings.file, began, causes);
     let plugs = Plugs::new(creature.clone(), directory, hands, events.clone());
     let shared = Arc::new(Shared {
         name: name.into(),
@@ -120,6 +133,7 @@ pub fn start(name: &str, machine: Machine, owned: OwnedPage, domain: Domain) -> 
         plugs,
         domain,
         floor,
+        recorder: Recorder::new(manifest, settings.flight.is_some()),
         status: Mutex::new(Arc::new(json!({}))),
     });
     let (stop, leave) = (Arc::new(AtomicBool::new(false)), Arc::new(AtomicBool::new(false)));
@@ -130,10 +144,17 @@ pub fn start(name: &str, machine: Machine, owned: OwnedPage, domain: Domain) -> 
     let mut beating = Vec::new();
     let mut records = Vec::new();
     let mut helpers = Vec::new();
+    let mut feeds = Vec::new();
+    if let Some(path) = &settings.record {
+        helpers.push(recorder::listener::into_file(shared.clone(), path)?);
+    }
     let mut periods: Vec<Span> = stations.iter().map(|s| s.spec.period).collect();
     periods.sort();
     periods.dedup();
-    for station in stations {
+    for mut station in stations {
+        let (tracer, trace) = traced(station.spec.period, station.running.ports());
+        station.running.trace(tracer);
+        feeds.push(Feed::new(trace, station.gauge.clone()));
         let spec = &station.spec;
         let rank = periods.iter().position(|p| *p == spec.period).unwrap_or(0);
         let monotonic = PRIORITY_MAX.saturating_sub(1 + rank as u8).max(1);
@@ -165,13 +186,16 @@ pub fn start(name: &str, machine: Machine, owned: OwnedPage, domain: Domain) -> 
     }
     let view = Arc::new(Mutex::new(json!({})));
     if let Some(Embodied {
-        motor,
+        mut motor,
         world,
         link,
         gauge,
     }) = body
     {
         let period = motor.period();
+        let (tracer, trace) = traced(period, motor.ports());
+        motor.trace(tracer);
+        feeds.push(Feed::new(trace, gauge.clone()));
         let plan = Plan {
             name: "motor".into(),
             period,
@@ -239,6 +263,7 @@ pub fn start(name: &str, machine: Machine, owned: OwnedPage, domain: Domain) -> 
         causes: Causes::NONE,
     };
     helpers.push(watcher.watch(leave.clone())?);
+    helpers.push(recorder::start(shared.clone(), feeds, settings, leave.clone())?);
     Ok(Running {
         shared,
         refusals,
@@ -247,6 +272,10 @@ pub fn start(name: &str, machine: Machine, owned: OwnedPage, domain: Domain) -> 
         stop,
         leave,
     })
+}
+
+fn traced(period: Span, (registers, outlets): (usize, usize)) -> (Tracer, Trace) {
+    trace::trace(period, registers, outlets)
 }
 
 fn keep(
