@@ -14,6 +14,7 @@ pub mod motor;
 pub mod options;
 pub mod plugs;
 pub mod recorder;
+pub mod replay;
 pub mod running;
 pub mod status;
 pub mod view;

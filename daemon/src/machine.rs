@@ -152,7 +152,8 @@ impl Machine {
     }
 }
 
-fn filed_taps(creature: &Creature) -> Vec<FiledTap> {
+/// The taps of a creature file, numbered from 1 in its order.
+pub fn filed_taps(creature: &Creature) -> Vec<FiledTap> {
     let of = |layer: &Layer| {
         let level = layer.level;
         let taps = layer.taps.clone();

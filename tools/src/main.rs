@@ -2,7 +2,10 @@
 
 mod check;
 mod live;
+mod record;
+mod replay;
 mod watch;
+mod why;
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -53,6 +56,54 @@ enum Command {
     },
     /// What happened: layers that came and went, halts, overruns
     Events,
+    /// The chain behind the newest message of a wire, back to the sensors
+    #[command(after_help = "Examples:\n  \
+        subsumectl why body.forward                       what the wheels are told, and why\n  \
+        subsumectl why turn.heading --from f.mcap --at -2  two seconds before a recording's end")]
+    Why {
+        /// The wire, such as turn.heading, or an input of the body, such as body.forward
+        wire: String,
+        #[command(flatten)]
+        when: When,
+    },
+    /// For every tapped port who holds it, and who gets it next
+    #[command(after_help = "Examples:\n  subsumectl holders\n  subsumectl holders --from f.mcap --at 12.5")]
+    Holders {
+        #[command(flatten)]
+        when: When,
+    },
+    /// Records all wires, taps, halts, overruns and the log into an MCAP file, until Ctrl-C
+    #[command(after_help = "Examples:\n  \
+        subsumectl record -o run.mcap --seconds 60     one minute from now\n  \
+        subsumectl record -o halt.mcap --ring 60s      the last minute before the next halt\n  \
+        subsumectl record -o now.mcap --past           what the flight recorder holds, at once\n\n\
+        The daemon's flight recorder keeps the last minute of every halt by itself: see subsumed --help.")]
+    Record {
+        /// The file to write
+        #[arg(short, long, value_name = "FILE")]
+        output: PathBuf,
+        /// Stop after this many seconds
+        #[arg(long, value_name = "N")]
+        seconds: Option<f64>,
+        /// Keep only the newest stretch, such as 60s, and stop when the body halts
+        #[arg(long, value_name = "SPAN", value_parser = ipc::clock::Span::parse)]
+        ring: Option<ipc::clock::Span>,
+        /// What the flight recorder holds already, and no more
+        #[arg(long, conflicts_with_all = ["seconds", "ring"])]
+        past: bool,
+    },
+    /// Runs a recording through the layers again and says where the outputs differ
+    #[command(after_help = "Examples:\n  \
+        subsumectl replay run.mcap                        none, for the build that recorded it\n  \
+        subsumectl replay run.mcap --creature mine.toml   what a change would have done\n\n\
+        Status: 0 no difference; 1 differences; 2 not a recording, or a bad creature file.")]
+    Replay {
+        /// The recording
+        file: PathBuf,
+        /// Another creature file than the recorded one
+        #[arg(long = "with", alias = "creature-file", value_name = "FILE")]
+        with: Option<PathBuf>,
+    },
     /// Emergency stop; holds until reset
     Halt,
     /// Ends an emergency stop
@@ -74,6 +125,26 @@ enum Command {
     },
 }
 
+/// Where to look, and when.
+#[derive(clap::Args, Debug)]
+struct When {
+    /// A recording instead of the running creature
+    #[arg(long, value_name = "FILE")]
+    from: Option<PathBuf>,
+    /// The moment, in seconds since the creature began; negative counts back from the end
+    #[arg(long, value_name = "T", allow_negative_numbers = true)]
+    at: Option<f64>,
+}
+
+impl From<When> for why::When {
+    fn from(when: When) -> why::When {
+        why::When {
+            from: when.from,
+            at: when.at,
+        }
+    }
+}
+
 fn main() -> ExitCode {
     // A reader that leaves early, such as `head`, ends this program without a complaint.
     let gone = std::sync::Arc::new(std::sync::atomic::AtomicBool::new(true));
@@ -84,6 +155,18 @@ fn main() -> ExitCode {
         Command::Status => live::status(creature, json),
         Command::Wires => live::wires(creature, json),
         Command::Watch { wire, count, seconds } => watch::watch(creature, &wire, json, count, seconds),
+        Command::Why { wire, when } => why::why(creature, &wire, &when.into(), json),
+        Command::Holders { when } => why::holders(creature, &when.into(), json),
+        Command::Record {
+            output,
+            seconds,
+            ring,
+            past,
+        } => {
+            let seconds = if past { Some(0.0) } else { seconds };
+            record::record(creature, &output, json, &record::Wanted { seconds, ring, past })
+        }
+        Command::Replay { file, with } => return replay::replay(&file, with.as_deref(), json),
         Command::Events => live::events(creature, json),
         Command::Halt => live::order(
             creature,
