@@ -10,6 +10,7 @@ pub mod events;
 pub mod executor;
 pub mod gate;
 pub mod machine;
+pub mod metrics;
 pub mod motor;
 pub mod options;
 pub mod plugs;

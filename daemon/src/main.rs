@@ -9,6 +9,7 @@ use std::time::{Duration, Instant};
 use clap::Parser;
 use daemon::control::{self, Control};
 use daemon::machine::{Machine, kinds};
+use daemon::metrics::{self, Endpoint, Metrics};
 use daemon::options::Options;
 use daemon::running::{self, Running};
 use daemon::view::View;
@@ -88,14 +89,18 @@ fn run(options: &Options, creature: Creature, file: String) -> Result<(), String
     let control =
         Control::open(&name, running.shared.clone()).map_err(|e| format!("the control socket: {e}"));
     let page = serve_page(options, &running);
-    let result = control.and_then(|control| page.map(|page| (control, page)));
-    let result = result.map(|(control, page)| {
+    let metrics = serve_metrics(options, &running);
+    let result = control.and_then(|control| Ok((control, page?, metrics?)));
+    let result = result.map(|(control, page, metrics)| {
         if !options.headless {
             introduce(&running, page.as_ref());
         }
+        for address in metrics.iter().filter_map(|m| m.address) {
+            println!("metrics: http://{address}/metrics");
+        }
         wait(options, &leave);
         // Nobody is answered any more while the body comes to a halt.
-        drop((control, page));
+        drop((control, page, metrics));
     });
     running.shut_down();
     result
@@ -109,6 +114,15 @@ fn serve_page(options: &Options, running: &Running) -> Result<Option<page::Serve
     page::serve(address, Arc::new(View(running.shared.clone())))
         .map(Some)
         .map_err(|e| e.to_string())
+}
+
+fn serve_metrics(options: &Options, running: &Running) -> Result<Vec<Metrics>, String> {
+    let port = options.metrics_port.map(Endpoint::Port);
+    let socket = options.metrics_socket.clone().map(Endpoint::Socket);
+    port.iter()
+        .chain(&socket)
+        .map(|endpoint| metrics::serve(endpoint, running.shared.clone()).map_err(|e| e.to_string()))
+        .collect()
 }
 
 fn introduce(running: &Running, page: Option<&page::Server>) {

@@ -6,6 +6,7 @@
 //! ```
 //! Must never leave an actuator moving: however it ends, the body is halted first.
 
+use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};
 use std::thread::JoinHandle;
@@ -238,6 +239,7 @@ pub fn start(
         from: filed.tap.from.to_string(),
         to: filed.tap.to.to_string(),
         time_constant: filed.tap.time_constant,
+        layer: (layer_of(&creature, &filed.tap), filed.level),
         reader: net
             .iter()
             .find(|w| w.name == filed.tap.from.to_string())
@@ -272,6 +274,12 @@ pub fn start(
         stop,
         leave,
     })
+}
+
+/// The layer that declares a tap.
+fn layer_of(creature: &Creature, tap: &ipc::wiring::creature::Tap) -> String {
+    let layer = creature.layers.iter().find(|l| l.taps.contains(tap));
+    layer.map_or(String::new(), |l| l.name.clone())
 }
 
 fn traced(period: Span, (registers, outlets): (usize, usize)) -> (Tracer, Trace) {
@@ -453,6 +461,7 @@ impl Watcher {
                     from: t.tap.from.clone(),
                     to: t.tap.to.clone(),
                     time_constant: t.tap.time_constant,
+                    layer: (a.plug.layer.clone(), a.plug.level),
                     reader: t.reader.clone(),
                     gauge: t.gauge.clone(),
                 };
@@ -470,6 +479,7 @@ impl Watcher {
                 "halted": causes != Causes::NONE, "causes": causes.names(),
                 "since_s": since.since(self.began).seconds(), "latched": causes.has(Causes::LATCHED),
             },
+            "halts": self.shared.halt.counts().collect::<BTreeMap<_, _>>(),
             "wires": wires, "taps": taps, "layers": layers, "events": newest,
             "real_time_allocations": alloc::broken(),
         });

@@ -2,7 +2,7 @@
 //!
 //! Must never touch a real-time thread: it reads cells, counters and sample rings like anybody else.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, VecDeque};
 
 use hdrhistogram::Histogram;
 use ipc::clock::{self, Span, Time};
@@ -35,7 +35,18 @@ pub struct Record {
     step: Histogram<u64>,
     /// Overruns at the last look, to notice new ones.
     overruns: u64,
+    /// Longest latency of each of the last seconds, oldest first, in microseconds.
+    trail: VecDeque<f64>,
+    /// Longest latency since the last second ended, and how many looks ago that was.
+    longest: (f64, u32),
 }
+
+/// How many seconds back the trail of latencies goes.
+const TRAIL_MAX: usize = 60;
+
+/// Looks of the watcher in a second.
+const LOOKS: u32 = 10;
+
 
 impl Record {
     /// An empty record of the thread whose samples these are.
@@ -56,6 +67,8 @@ impl Record {
             latency: histogram(),
             step: histogram(),
             overruns: 0,
+            trail: VecDeque::new(),
+            longest: (0.0, 0),
         }
     }
 
@@ -64,6 +77,15 @@ impl Record {
         while let Ok(sample) = self.samples.pop() {
             self.latency.saturating_record(sample.latency.0.max(1));
             self.step.saturating_record(sample.step.0.max(1));
+            self.longest.0 = self.longest.0.max(sample.latency.0 as f64 / 1e3);
+        }
+        self.longest.1 += 1;
+        if self.longest.1 == LOOKS {
+            if self.trail.len() == TRAIL_MAX {
+                self.trail.pop_front();
+            }
+            self.trail.push_back(self.longest.0);
+            self.longest = (0.0, 0);
         }
         let overruns = self.gauge.counts().overruns;
         let new = overruns - self.overruns;
@@ -78,7 +100,8 @@ impl Record {
             "beats": counts.beats, "skipped": counts.skipped, "overruns": counts.overruns,
             "lost_samples": counts.lost_samples, "attached": false,
             "latency_us": percentiles(&self.latency), "step_us": percentiles(&self.step),
-            "histogram": bars(&self.latency),
+            "histogram": bars(&self.latency), "step_histogram": bars(&self.step),
+            "latency_sum_us": sum(&self.latency), "step_sum_us": sum(&self.step), "trail_us": self.trail,
         })
     }
 }
@@ -86,6 +109,11 @@ impl Record {
 fn percentiles(h: &Histogram<u64>) -> Value {
     let us = |q: f64| h.value_at_quantile(q) as f64 / 1e3;
     json!({ "p50": us(0.5), "p99": us(0.99), "p999": us(0.999), "max": h.max() as f64 / 1e3 })
+}
+
+/// Sum of everything in a histogram, in microseconds.
+fn sum(h: &Histogram<u64>) -> f64 {
+    h.mean() * h.len() as f64 / 1e3
 }
 
 /// Bars of a histogram: upper bound in microseconds, doubling from 1, and count.
@@ -166,6 +194,8 @@ pub struct WatchedTap {
     pub to: String,
     /// Its time constant.
     pub time_constant: Span,
+    /// Its layer and that layer's level.
+    pub layer: (String, u8),
     /// Its messages.
     pub reader: Reader,
     /// Its counters.
@@ -181,7 +211,7 @@ pub fn tap(t: &WatchedTap, now: Time) -> Value {
     let remaining = window.map_or(Span::ZERO, |w| w.remaining(now));
     let counts = t.gauge.counts();
     json!({
-        "from": t.from, "to": t.to, "kind": t.how, "time_constant_ms": t.time_constant.as_millis_f64(),
+        "from": t.from, "to": t.to, "kind": t.how, "layer": t.layer.0, "level": t.layer.1, "time_constant_ms": t.time_constant.as_millis_f64(),
         "holds": remaining > Span::ZERO, "remaining_ms": remaining.as_millis_f64(),
         "delivered": counts.delivered, "rejected": counts.rejected, "faults": counts.faults,
     })

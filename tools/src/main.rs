@@ -7,7 +7,7 @@ mod replay;
 mod watch;
 mod why;
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
@@ -27,9 +27,9 @@ use ipc::control::Request;
     Status: 0 done; 1 not done (no daemon, refused); 2 bad input."
 )]
 struct Options {
-    /// The running creature to speak to
-    #[arg(long, global = true, default_value = "allen", value_name = "NAME")]
-    creature: String,
+    /// The running creature to speak to; allen if not given
+    #[arg(long, global = true, value_name = "NAME")]
+    creature: Option<String>,
     /// Machine-readable output
     #[arg(long, global = true)]
     json: bool,
@@ -95,14 +95,11 @@ enum Command {
     /// Runs a recording through the layers again and says where the outputs differ
     #[command(after_help = "Examples:\n  \
         subsumectl replay run.mcap                        none, for the build that recorded it\n  \
-        subsumectl replay run.mcap --creature mine.toml   what a change would have done\n\n\
+        subsumectl replay run.mcap --creature mine.toml   what another creature file would have done\n\n\
         Status: 0 no difference; 1 differences; 2 not a recording, or a bad creature file.")]
     Replay {
         /// The recording
         file: PathBuf,
-        /// Another creature file than the recorded one
-        #[arg(long = "with", alias = "creature-file", value_name = "FILE")]
-        with: Option<PathBuf>,
     },
     /// Emergency stop; holds until reset
     Halt,
@@ -150,7 +147,7 @@ fn main() -> ExitCode {
     let gone = std::sync::Arc::new(std::sync::atomic::AtomicBool::new(true));
     let _ = signal_hook::flag::register_conditional_default(signal_hook::consts::SIGPIPE, gone);
     let options = Options::parse();
-    let (creature, json) = (options.creature.as_str(), options.json);
+    let (creature, json) = (options.creature.as_deref().unwrap_or("allen"), options.json);
     let done = match options.command {
         Command::Status => live::status(creature, json),
         Command::Wires => live::wires(creature, json),
@@ -166,7 +163,9 @@ fn main() -> ExitCode {
             let seconds = if past { Some(0.0) } else { seconds };
             record::record(creature, &output, json, &record::Wanted { seconds, ring, past })
         }
-        Command::Replay { file, with } => return replay::replay(&file, with.as_deref(), json),
+        Command::Replay { file } => {
+            return replay::replay(&file, options.creature.as_deref().map(Path::new), json);
+        }
         Command::Events => live::events(creature, json),
         Command::Halt => live::order(
             creature,
