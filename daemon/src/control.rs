@@ -16,8 +16,8 @@ use ipc::clock::Span;
 use ipc::control::{Connection, Reply, Request, Versions, run_dir, socket_path};
 
 use crate::gate::Causes;
-use crate::recorder::listener::{self, Wanted};
 use crate::recorder::Begin;
+use crate::recorder::listener::{self, Wanted};
 use crate::running::Shared;
 
 /// Most callers at once: as many layers as may attach, and as many tools.
@@ -206,7 +206,10 @@ fn record(
         while matches!(io::Read::read(&mut other_end, &mut byte), Ok(1..)) {}
         told.store(true, Ordering::Relaxed);
     };
-    let ear = std::thread::Builder::new().name("ear".into()).stack_size(64 << 10).spawn(listen)?;
+    let ear = std::thread::Builder::new()
+        .name("ear".into())
+        .stack_size(64 << 10)
+        .spawn(listen)?;
     let wanted = Wanted {
         begin: if past { Begin::Past } else { Begin::Now },
         length: seconds.and_then(|s| Duration::try_from_secs_f64(s).ok()),
@@ -257,8 +260,10 @@ fn answer(request: Request, shared: &Shared) -> Reply {
                 reasons: vec![reason],
             },
         },
-        Request::Hello { .. } | Request::Plug(_) | Request::Unplug | Request::Record { .. } => Reply::Refused {
-            reasons: vec!["not now".into()],
-        },
+        Request::Hello { .. } | Request::Plug(_) | Request::Unplug | Request::Record { .. } => {
+            Reply::Refused {
+                reasons: vec!["not now".into()],
+            }
+        }
     }
 }

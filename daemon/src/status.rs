@@ -47,7 +47,6 @@ const TRAIL_MAX: usize = 60;
 /// Looks of the watcher in a second.
 const LOOKS: u32 = 10;
 
-
 impl Record {
     /// An empty record of the thread whose samples these are.
     pub fn new(

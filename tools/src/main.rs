@@ -2,8 +2,10 @@
 
 mod check;
 mod live;
+mod manual;
 mod record;
 mod replay;
+mod top;
 mod watch;
 mod why;
 
@@ -20,7 +22,9 @@ use ipc::control::Request;
     version,
     after_help = "Examples:\n  \
     subsumectl status                     what the creature does\n  \
-    subsumectl watch turn.heading         messages of a wire as they come\n  \
+    subsumectl top                        the same, live\n  \
+    subsumectl watch turn.rate            messages of a wire as they come\n  \
+    subsumectl why body.forward           what the wheels are told, and why\n  \
     subsumectl halt; subsumectl reset     emergency stop, and its end\n  \
     subsumectl --creature jerry status    another instance\n  \
     subsumectl check mine.toml            every error of a creature file\n\n\
@@ -41,6 +45,12 @@ struct Options {
 enum Command {
     /// Layers with beats, overruns and latencies; who is attached; halt state
     Status,
+    /// The same on the whole terminal, live: layers, taps, wires, halt; keys to sort, filter, halt and reset
+    #[command(
+        after_help = "Examples:\n  subsumectl top\n  NO_COLOR=1 subsumectl --creature jerry top\n\n\
+        Keys: q quit, s sort, / filter, f freeze, h halt, r reset, ? help"
+    )]
+    Top,
     /// Every wire with type, rate, age and newest value
     Wires,
     /// Messages of a wire as they come, until Ctrl-C
@@ -111,6 +121,23 @@ enum Command {
         #[arg(required = true)]
         files: Vec<PathBuf>,
     },
+    /// Prints completions for a shell
+    #[command(after_help = "Examples:\n  \
+        subsumectl completions bash > /usr/share/bash-completion/completions/subsumectl\n  \
+        subsumectl completions zsh --program subsumed > _subsumed")]
+    Completions {
+        /// The shell
+        shell: clap_complete::Shell,
+        /// Whose command line
+        #[arg(long, value_enum, default_value = "subsumectl")]
+        program: manual::Program,
+    },
+    /// Writes the manual pages of subsumectl and subsumed into a folder
+    #[command(after_help = "Example: subsumectl man target/man && man -l target/man/subsumectl.1")]
+    Man {
+        /// The folder; made if it is not there
+        folder: PathBuf,
+    },
     /// Truckin': games, the whole grid, evolution of trucks
     Truckin(truckin::command::TruckinArgs),
     /// ADROIT: check, draw, run and change programs of releasing mechanisms
@@ -150,6 +177,12 @@ fn main() -> ExitCode {
     let (creature, json) = (options.creature.as_deref().unwrap_or("allen"), options.json);
     let done = match options.command {
         Command::Status => live::status(creature, json),
+        Command::Top => top::top(creature),
+        Command::Completions { shell, program } => {
+            manual::completions(shell, program);
+            Ok(())
+        }
+        Command::Man { folder } => manual::pages(&folder),
         Command::Wires => live::wires(creature, json),
         Command::Watch { wire, count, seconds } => watch::watch(creature, &wire, json, count, seconds),
         Command::Why { wire, when } => why::why(creature, &wire, &when.into(), json),

@@ -44,7 +44,10 @@ pub(crate) fn record(creature: &str, path: &Path, as_json: bool, wanted: &Wanted
         });
         println!("{report}");
     } else {
-        println!("{shown}: {seconds:.1} s, {messages} messages on {} wires, {lost} lost", recording.wires.len());
+        println!(
+            "{shown}: {seconds:.1} s, {messages} messages on {} wires, {lost} lost",
+            recording.wires.len()
+        );
         for (what, n) in &recording.losses {
             println!("  {what}: {n} lost");
         }
@@ -89,7 +92,9 @@ fn receive(
         other => return Err(format!("the daemon answered {other:?}")),
     }
     let socket = connection.socket().try_clone().map_err(gone)?;
-    socket.set_read_timeout(Some(std::time::Duration::from_millis(100))).map_err(gone)?;
+    socket
+        .set_read_timeout(Some(std::time::Duration::from_millis(100)))
+        .map_err(gone)?;
     let mut rest = connection.rest();
     let (mut bytes, mut told) = (0, false);
     let mut buffer = vec![0; 1 << 16];
@@ -105,7 +110,11 @@ fn receive(
                 out.write_all(&buffer[..n]).map_err(&cannot_write)?;
                 bytes += n as u64;
             }
-            Err(e) if matches!(e.kind(), std::io::ErrorKind::WouldBlock | std::io::ErrorKind::Interrupted) => {}
+            Err(e)
+                if matches!(
+                    e.kind(),
+                    std::io::ErrorKind::WouldBlock | std::io::ErrorKind::Interrupted
+                ) => {}
             Err(e) => return Err(gone(e)),
         }
     }

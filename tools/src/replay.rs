@@ -24,7 +24,10 @@ pub(crate) fn replay(file: &Path, creature: Option<&Path>, as_json: bool) -> Exi
         Err(message) => return bad(message),
     };
     let source = match creature {
-        None => Source::new(format!("creature file in {}", file.display()), recording.manifest.file.as_str()),
+        None => Source::new(
+            format!("creature file in {}", file.display()),
+            recording.manifest.file.as_str(),
+        ),
         Some(path) => match std::fs::read_to_string(path) {
             Ok(text) => Source::new(path.display().to_string(), text),
             Err(e) => return bad(format!("{}: cannot be read: {e}", path.display())),
@@ -42,15 +45,28 @@ pub(crate) fn replay(file: &Path, creature: Option<&Path>, as_json: bool) -> Exi
     } else {
         print!("{}", text(&outcome));
     }
-    if differing == 0 { ExitCode::SUCCESS } else { ExitCode::FAILURE }
+    if differing == 0 {
+        ExitCode::SUCCESS
+    } else {
+        ExitCode::FAILURE
+    }
 }
 
 fn text(outcome: &Outcome) -> String {
     let mut text = format!("{} beats, {:.1} s\n", outcome.beats, outcome.seconds);
-    outcome.doubts.iter().for_each(|doubt| text += &format!("note: {doubt}\n"));
-    text += &format!("{:<24} {:>10} {:>10} {:>10}\n", "output", "recorded", "replayed", "differing");
+    outcome
+        .doubts
+        .iter()
+        .for_each(|doubt| text += &format!("note: {doubt}\n"));
+    text += &format!(
+        "{:<24} {:>10} {:>10} {:>10}\n",
+        "output", "recorded", "replayed", "differing"
+    );
     for (name, o) in &outcome.outputs {
-        text += &format!("{name:<24} {:>10} {:>10} {:>10}\n", o.recorded, o.replayed, o.differing);
+        text += &format!(
+            "{name:<24} {:>10} {:>10} {:>10}\n",
+            o.recorded, o.replayed, o.differing
+        );
         if let Some(first) = &o.first {
             let words = |w: &Option<Vec<f64>>| w.as_ref().map_or("nothing".into(), |w| format!("{w:?}"));
             text += &format!(

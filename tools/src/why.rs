@@ -57,7 +57,10 @@ pub(crate) fn why(creature: &str, wire: &str, when: &When, as_json: bool) -> Res
     let (recording, at) = when.recording(creature)?;
     let link = why::why(&recording, wire, at)?;
     if as_json {
-        println!("{}", json!({"at_s": recording.manifest.seconds(at), "chain": link}));
+        println!(
+            "{}",
+            json!({"at_s": recording.manifest.seconds(at), "chain": link})
+        );
     } else {
         println!("at {:.3} s", recording.manifest.seconds(at));
         print!("{}", chain_text(&link));
@@ -76,11 +79,23 @@ fn link_text(link: &Link, first: &str, rest: &str, text: &mut String) {
     let value = match link.value.as_slice() {
         [] => "(pulse)".to_string(),
         [one] => format!("{one:.3}"),
-        many => format!("[{}]", many.iter().map(|v| format!("{v:.2}")).collect::<Vec<_>>().join(" ")),
+        many => format!(
+            "[{}]",
+            many.iter()
+                .map(|v| format!("{v:.2}"))
+                .collect::<Vec<_>>()
+                .join(" ")
+        ),
     };
-    let unit = if link.unit.is_empty() { String::new() } else { format!(" {}", link.unit) };
+    let unit = if link.unit.is_empty() {
+        String::new()
+    } else {
+        format!(" {}", link.unit)
+    };
     *text += &format!("{first}{} = {value}{unit}  ({})\n", link.wire, age(link.age_ms));
+    let input = matches!(link.inputs.as_slice(), [one] if one.port == link.wire);
     let by = match (&link.module, link.level) {
+        (Some(_), Some(level)) if input => format!("an input of layer {} (level {level})", link.layer),
         (Some(module), Some(level)) => format!("by {module}, layer {} (level {level})", link.layer),
         _ if link.layer == recording::manifest::MOTOR && link.module.is_none() && !link.inputs.is_empty() => {
             "told to the body by the motor unit".into()
@@ -102,7 +117,11 @@ fn link_text(link: &Link, first: &str, rest: &str, text: &mut String) {
 }
 
 fn input_text(input: &Input, rest: &str, last: bool, text: &mut String) {
-    let (branch, below) = if last { ("└─ ", "   ") } else { ("├─ ", "│  ") };
+    let (branch, below) = if last {
+        ("└─ ", "   ")
+    } else {
+        ("├─ ", "│  ")
+    };
     let arrived = if input.arrived { "just arrived" } else { "held" };
     let by = match (&input.held, &input.tap) {
         (None, _) => "had nothing".to_string(),
@@ -130,7 +149,10 @@ fn tap_text(tap: &TapSeen) -> String {
         (false, Some(ms)) => format!("does not hold, spoke {} ago", span(ms)),
         (false, None) => "never spoke".into(),
     };
-    format!("{mark} {} of {} (level {}): {state}", tap.from, tap.layer, tap.level)
+    format!(
+        "{mark} {} of {} (level {}): {state}",
+        tap.from, tap.layer, tap.level
+    )
 }
 
 fn age(ms: f64) -> String {
@@ -150,7 +172,10 @@ pub(crate) fn holders(creature: &str, when: &When, as_json: bool) -> Result<(), 
     let (recording, at) = when.recording(creature)?;
     let holders = why::holders(&recording, at);
     if as_json {
-        println!("{}", json!({"at_s": recording.manifest.seconds(at), "holders": holders}));
+        println!(
+            "{}",
+            json!({"at_s": recording.manifest.seconds(at), "holders": holders})
+        );
         return Ok(());
     }
     println!("at {:.3} s", recording.manifest.seconds(at));
@@ -168,12 +193,17 @@ pub(crate) fn holder_text(h: &Holder) -> String {
             format!("held by {holder} of {layer} for {}; then {next}", span(h.left_ms))
         }
         (Some(layer), _, How::Inhibit) => {
-            format!("silenced by {holder} of {layer} for {}; then it speaks again", span(h.left_ms))
+            format!(
+                "silenced by {holder} of {layer} for {}; then it speaks again",
+                span(h.left_ms)
+            )
         }
         (None, _, How::Inhibit) => "speaks".into(),
         _ => format!("held by {holder}, its own wire"),
     };
     let mut text = format!("{}: {state}\n", h.port);
-    h.taps.iter().for_each(|tap| text += &format!("  {}\n", tap_text(tap)));
+    h.taps
+        .iter()
+        .for_each(|tap| text += &format!("  {}\n", tap_text(tap)));
     text
 }

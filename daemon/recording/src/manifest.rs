@@ -138,7 +138,10 @@ impl Manifest {
                 modules: Vec::new(),
             });
         }
-        let taps = creature.layers.iter().flat_map(|l| l.taps.iter().map(move |t| (l, t)));
+        let taps = creature
+            .layers
+            .iter()
+            .flat_map(|l| l.taps.iter().map(move |t| (l, t)));
         let taps = taps.zip(1..).map(|((layer, tap), number)| Tap {
             number,
             how: tap.how,
@@ -178,24 +181,36 @@ impl Manifest {
     /// The source and slot that write a wire.
     pub fn writer_of(&self, wire: &str) -> Option<(usize, usize)> {
         let slot = |s: &Source| s.outputs.iter().position(|o| o.name == wire);
-        self.sources.iter().enumerate().find_map(|(i, s)| Some((i, slot(s)?)))
+        self.sources
+            .iter()
+            .enumerate()
+            .find_map(|(i, s)| Some((i, slot(s)?)))
     }
 
     /// The source and slot of an input port.
     pub fn register_of(&self, port: &str) -> Option<(usize, usize)> {
         let slot = |s: &Source| s.inputs.iter().position(|i| i.name == port);
-        self.sources.iter().enumerate().find_map(|(i, s)| Some((i, slot(s)?)))
+        self.sources
+            .iter()
+            .enumerate()
+            .find_map(|(i, s)| Some((i, slot(s)?)))
     }
 
     /// The wire into an input port.
     pub fn wire_into(&self, port: &str) -> Option<&str> {
-        self.wires.iter().find(|(_, to)| to == port).map(|(from, _)| from.as_str())
+        self.wires
+            .iter()
+            .find(|(_, to)| to == port)
+            .map(|(from, _)| from.as_str())
     }
 
     /// The causes in a set of them, by name.
     pub fn cause_names(&self, bits: u64) -> Vec<&str> {
         let named = self.causes.iter().enumerate();
-        named.filter(|(bit, _)| bits >> bit & 1 == 1).map(|(_, name)| name.as_str()).collect()
+        named
+            .filter(|(bit, _)| bits >> bit & 1 == 1)
+            .map(|(_, name)| name.as_str())
+            .collect()
     }
 }
 
@@ -213,7 +228,9 @@ fn layer(layer: &Layer) -> Source {
         let declaration: &Declaration = module.declaration;
         let inputs = declaration.inputs.iter().chain([&catalog::RESET]);
         source.inputs.extend(slots(&module.name, inputs));
-        source.outputs.extend(slots(&module.name, declaration.outputs.iter()));
+        source
+            .outputs
+            .extend(slots(&module.name, declaration.outputs.iter()));
         let names = |ports: &[Port]| ports.iter().map(|p| p.name.to_string()).collect();
         source.modules.push(PlugModule {
             name: module.name.clone(),
@@ -241,6 +258,8 @@ fn slots<'p>(module: &str, ports: impl Iterator<Item = &'p Port>) -> Vec<Slot> {
 
 /// Nanoseconds from the monotonic clock to the time of day, now.
 fn offset() -> i64 {
-    let day = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH).unwrap_or_default();
+    let day = SystemTime::now()
+        .duration_since(SystemTime::UNIX_EPOCH)
+        .unwrap_or_default();
     day.as_nanos() as i64 - clock::monotonic().0 as i64
 }

@@ -137,7 +137,8 @@ impl Beat {
         let with = |fate| move |&(slot, number): &(usize, u64)| (slot, number, fate);
         let saw = self.saw.iter().map(with(Fate::Delivered));
         let rejected = self.rejected.iter().map(with(Fate::Rejected));
-        saw.chain(rejected).chain(self.faults.iter().map(with(Fate::Fault)))
+        saw.chain(rejected)
+            .chain(self.faults.iter().map(with(Fate::Fault)))
     }
 }
 
@@ -204,7 +205,11 @@ pub fn parse(bytes: &[u8]) -> Result<Recording, String> {
     let (manifest, losses, whole) = records(bytes)?;
     let mut recording = Recording {
         beats: vec![Vec::new(); manifest.sources.len()],
-        plugs: manifest.plugs.iter().map(|p| (Time(manifest.began_ns), p.clone())).collect(),
+        plugs: manifest
+            .plugs
+            .iter()
+            .map(|p| (Time(manifest.began_ns), p.clone()))
+            .collect(),
         manifest,
         wires: BTreeMap::new(),
         commands: BTreeMap::new(),
@@ -253,7 +258,10 @@ fn records(bytes: &[u8]) -> Result<(Manifest, BTreeMap<String, u64>, bool), Stri
     }
     let mut manifest = manifest.ok_or("is no recording of a creature: it has no manifest of subsumed")?;
     if manifest.format != FORMAT {
-        return Err(format!("has format {}; this program reads format {FORMAT}", manifest.format));
+        return Err(format!(
+            "has format {}; this program reads format {FORMAT}",
+            manifest.format
+        ));
     }
     manifest.file = file;
     Ok((manifest, losses, whole))
@@ -264,7 +272,12 @@ impl Recording {
         let topic = message.channel.topic.as_str();
         let wrong = |e: serde_json::Error| format!("has a message on {topic} that cannot be read: {e}");
         if let Some(name) = topic.strip_prefix("/wires/") {
-            let plug = message.channel.metadata.get("plug").and_then(|p| p.parse().ok()).unwrap_or(0);
+            let plug = message
+                .channel
+                .metadata
+                .get("plug")
+                .and_then(|p| p.parse().ok())
+                .unwrap_or(0);
             let text: MessageText = serde_json::from_slice(&message.data).map_err(wrong)?;
             let message = text.message(kind_of(&message.channel));
             self.wires.entry((plug, name.into())).or_default().push(message);
@@ -293,7 +306,9 @@ impl Recording {
                     self.plugs.push((time, plugged));
                 }
             }
-            "/plugs" => self.unplugs.push((time, text["number"].as_u64().unwrap_or(0) as u32)),
+            "/plugs" => self
+                .unplugs
+                .push((time, text["number"].as_u64().unwrap_or(0) as u32)),
             "/losses" => {
                 let what = text["what"].as_str().unwrap_or_default().to_string();
                 self.losses.insert(what, text["lost"].as_u64().unwrap_or(0));
@@ -323,7 +338,11 @@ impl Recording {
     /// Every tap there ever was, with the number of the layer it belongs to; 0 for the creature file's.
     pub fn taps(&self) -> impl Iterator<Item = (u32, Tap)> {
         let filed = self.manifest.taps.iter().map(|t| (0, t.clone()));
-        filed.chain(self.plugs.iter().flat_map(|(_, p)| p.taps().map(|t| (p.number, t))))
+        filed.chain(
+            self.plugs
+                .iter()
+                .flat_map(|(_, p)| p.taps().map(|t| (p.number, t))),
+        )
     }
 
     /// Message `number` of a wire.
@@ -361,7 +380,8 @@ impl Recording {
 
     /// How long it is.
     pub fn span(&self) -> Span {
-        self.stretch().map_or(Span::ZERO, |(first, last)| last.since(first))
+        self.stretch()
+            .map_or(Span::ZERO, |(first, last)| last.since(first))
     }
 
     /// The index of the motor unit among the sources.
@@ -373,6 +393,8 @@ impl Recording {
 /// The kind of message on a channel: the end of its schema's name.
 fn kind_of(channel: &mcap::Channel<'_>) -> Kind {
     let name = channel.schema.as_ref().map_or("", |s| s.name.as_str());
-    let kind = ipc::message::KINDS.into_iter().find(|k| name.strip_prefix("subsumed.") == Some(k.name()));
+    let kind = ipc::message::KINDS
+        .into_iter()
+        .find(|k| name.strip_prefix("subsumed.") == Some(k.name()));
     kind.unwrap_or(Kind::Pulse)
 }

@@ -41,22 +41,26 @@ struct SourceBase {
 impl Ring {
     /// An empty ring for a creature: holds what happened within `span`, in at most `bytes_max` bytes.
     pub fn new(manifest: &Manifest, span: Span, bytes_max: usize) -> Ring {
-        let sources = manifest.sources.iter().enumerate().map(|(index, source)| SourceBase {
-            base: Base {
-                source: index as u16,
-                wrote: vec![None; source.outputs.len()],
-                saw: vec![None; source.inputs.len()],
-                passed: vec![None; source.inputs.len()],
-                ..Base::default()
-            },
-            feeds: source
-                .inputs
-                .iter()
-                .map(|port| manifest.writer_of(manifest.wire_into(&port.name)?))
-                .collect(),
-            taps: BTreeMap::new(),
-            begun: false,
-        });
+        let sources = manifest
+            .sources
+            .iter()
+            .enumerate()
+            .map(|(index, source)| SourceBase {
+                base: Base {
+                    source: index as u16,
+                    wrote: vec![None; source.outputs.len()],
+                    saw: vec![None; source.inputs.len()],
+                    passed: vec![None; source.inputs.len()],
+                    ..Base::default()
+                },
+                feeds: source
+                    .inputs
+                    .iter()
+                    .map(|port| manifest.writer_of(manifest.wire_into(&port.name)?))
+                    .collect(),
+                taps: BTreeMap::new(),
+                begun: false,
+            });
         let plugs = manifest.plugs.iter();
         Ring {
             span,
@@ -93,11 +97,16 @@ impl Ring {
         let bases = begun.map(|s| {
             let taps = s.taps.iter();
             Item::Base(Arc::new(Base {
-                taps: taps.map(|(tap, (held, fate))| (*tap, held.clone(), *fate)).collect(),
+                taps: taps
+                    .map(|(tap, (held, fate))| (*tap, held.clone(), *fate))
+                    .collect(),
                 ..s.base.clone()
             }))
         });
-        let plugs = self.plugs.values().map(|(time, plug)| Item::Plugged(*time, plug.clone()));
+        let plugs = self
+            .plugs
+            .values()
+            .map(|(time, plug)| Item::Plugged(*time, plug.clone()));
         plugs.chain(bases).chain(self.items.iter().cloned()).collect()
     }
 

@@ -113,7 +113,7 @@ pub struct Holder {
     pub taps: Vec<TapSeen>,
 }
 
-/// The chain behind the newest message of `wire` at the moment `at`; `wire` may be an input of the body.
+/// The chain behind the newest message of `wire` at the moment `at`; `wire` may be an input port as well.
 ///
 /// # Errors
 /// A sentence, when there is no such wire or nothing was on it.
@@ -123,6 +123,11 @@ pub fn why(recording: &Recording, wire: &str, at: Time) -> Result<Link, String> 
         explained: HashSet::new(),
     };
     let names = names(recording);
+    if !names.iter().any(|n| n == wire) && recording.manifest.register_of(wire).is_some() {
+        return chain
+            .port(wire, at)
+            .ok_or_else(|| format!("{wire} has had no message, and is not tapped"));
+    }
     if !names.iter().any(|n| n == wire) {
         let help = ipc::wiring::diagnostic::one_of("wire", wire, names.iter().map(String::as_str));
         return Err(format!("there is no wire {wire:?}; {help}"));
@@ -142,8 +147,14 @@ pub fn why(recording: &Recording, wire: &str, at: Time) -> Result<Link, String> 
 /// Every wire, and every input of the body.
 pub fn names(recording: &Recording) -> Vec<String> {
     let manifest = &recording.manifest;
-    let outputs = manifest.sources.iter().flat_map(|s| s.outputs.iter().map(|o| o.name.clone()));
-    let plugged = recording.plugs.iter().flat_map(|(_, p)| p.plug.outputs.iter().map(|o| o.name.clone()));
+    let outputs = manifest
+        .sources
+        .iter()
+        .flat_map(|s| s.outputs.iter().map(|o| o.name.clone()));
+    let plugged = recording
+        .plugs
+        .iter()
+        .flat_map(|(_, p)| p.plug.outputs.iter().map(|o| o.name.clone()));
     let motor = manifest.sources.iter().filter(|s| s.name == MOTOR);
     let inputs = motor.flat_map(|s| s.inputs.iter().map(|i| i.name.clone()));
     let mut names: Vec<String> = outputs.chain(plugged).chain(inputs).collect();
@@ -174,16 +185,43 @@ impl Chain<'_> {
     fn command(&mut self, port: &str, told: &Message, at: Time) -> Link {
         let manifest = &self.recording.manifest;
         let source = self.recording.motor().unwrap_or(0);
-        let slot = manifest.sources[source].inputs.iter().position(|i| i.name == port);
+        let slot = manifest.sources[source]
+            .inputs
+            .iter()
+            .position(|i| i.name == port);
         let mut link = self.bare(port, told, at, slot.map(|s| &manifest.sources[source].inputs[s]));
         link.layer = MOTOR.into();
         if let Some((index, traced)) = self.beat_at(source, told.stamp) {
             link.traced = traced;
             let causes = self.recording.beats[source][index].causes.unwrap_or(0);
             link.halted = manifest.cause_names(causes).into_iter().map(Into::into).collect();
-            link.inputs = slot.into_iter().filter_map(|s| self.input(source, s, index, 0)).collect();
+            link.inputs = slot
+                .into_iter()
+                .filter_map(|s| self.input(source, s, index, 0))
+                .collect();
         }
         link
+    }
+
+    /// What an input port holds.
+    fn port(&mut self, port: &str, at: Time) -> Option<Link> {
+        let (source, slot) = self.recording.manifest.register_of(port)?;
+        let (index, _) = self.beat_at(source, at)?;
+        let input = self.input(source, slot, index, 0)?;
+        let held = input.held.as_deref()?;
+        let of = &self.recording.manifest.sources[source];
+        Some(Link {
+            wire: port.into(),
+            module: port.split_once('.').map(|(module, _)| module.to_string()),
+            layer: of.name.clone(),
+            level: of.level,
+            pid: None,
+            halted: Vec::new(),
+            traced: true,
+            above: false,
+            inputs: vec![input.clone()],
+            ..held.clone()
+        })
     }
 
     fn bare(&self, wire: &str, message: &Message, at: Time, slot: Option<&crate::manifest::Slot>) -> Link {
@@ -233,7 +271,12 @@ impl Chain<'_> {
     }
 
     fn foreign(&self, plug: u32, wire: &str, message: &Message, at: Time) -> Link {
-        let plugged = self.recording.plugs.iter().find(|(_, p)| p.number == plug).map(|(_, p)| p);
+        let plugged = self
+            .recording
+            .plugs
+            .iter()
+            .find(|(_, p)| p.number == plug)
+            .map(|(_, p)| p);
         let output = plugged.and_then(|p| p.plug.outputs.iter().find(|o| o.name == wire));
         let slot = output.map(|o| crate::manifest::Slot {
             name: o.name.clone(),
@@ -254,19 +297,30 @@ impl Chain<'_> {
     /// The registers of the module that wrote it, at the beat that did.
     fn explain(&mut self, link: &mut Link, message: &Message, depth: usize) {
         let Some(module) = link.module.clone() else { return };
-        let Some((source, _)) = self.recording.manifest.writer_of(&link.wire) else { return };
-        let Some((index, traced)) = self.beat_at(source, message.stamp) else { return };
+        let Some((source, _)) = self.recording.manifest.writer_of(&link.wire) else {
+            return;
+        };
+        let Some((index, traced)) = self.beat_at(source, message.stamp) else {
+            return;
+        };
         link.traced = traced;
         let inputs = &self.recording.manifest.sources[source].inputs;
         let of_module = |name: &str| name.split_once('.').is_some_and(|(m, _)| m == module);
-        let slots: Vec<usize> = (0..inputs.len()).filter(|&s| of_module(&inputs[s].name)).collect();
-        link.inputs = slots.into_iter().filter_map(|slot| self.input(source, slot, index, depth)).collect();
+        let slots: Vec<usize> = (0..inputs.len())
+            .filter(|&s| of_module(&inputs[s].name))
+            .collect();
+        link.inputs = slots
+            .into_iter()
+            .filter_map(|slot| self.input(source, slot, index, depth))
+            .collect();
     }
 
     /// What stood on the wires into the module of a layer process, by their stamps.
     fn explain_foreign(&mut self, plug: u32, link: &mut Link, message: &Message, depth: usize) {
         let Some(module) = link.module.clone() else { return };
-        let Some((_, plugged)) = self.recording.plugs.iter().find(|(_, p)| p.number == plug) else { return };
+        let Some((_, plugged)) = self.recording.plugs.iter().find(|(_, p)| p.number == plug) else {
+            return;
+        };
         for (from, to) in plugged.plug.wires.clone() {
             if to.split_once('.').is_none_or(|(m, _)| m != module) {
                 continue;
@@ -323,20 +377,26 @@ impl Chain<'_> {
         for (plug, tap) in &taps {
             let found = seen(tap);
             standing.push(tap_seen(tap, found.map(|(_, m)| m.stamp), now));
-            let Some((i, message)) = found.filter(|(_, m)| m.fate == Fate::Delivered) else { continue };
-            let Some(brought) = recording.message(*plug, &tap.from, message.number) else { continue };
+            let Some((i, message)) = found.filter(|(_, m)| m.fate == Fate::Delivered) else {
+                continue;
+            };
+            let Some(brought) = recording.message(*plug, &tap.from, message.number) else {
+                continue;
+            };
             if held.as_ref().is_none_or(|(.., m, _)| message.stamp >= m.stamp) {
                 held = Some((i, *plug, tap.from.clone(), *brought, Some(tap.layer.clone())));
             }
         }
         let since = held.as_ref().map_or(0, |(i, ..)| *i);
-        let kept_out = beats[since..].iter().flat_map(|b| &b.rejected).filter(|(s, _)| *s == slot);
+        let kept_out = beats[since..]
+            .iter()
+            .flat_map(|b| &b.rejected)
+            .filter(|(s, _)| *s == slot);
         let rejected = kept_out.count() as u64;
         let arrived = held.as_ref().is_some_and(|(i, ..)| *i == index);
         let tap = held.as_ref().and_then(|(.., tap)| tap.clone());
-        let held = held.map(|(_, plug, wire, message, _)| {
-            Box::new(self.link(plug, &wire, &message, now, depth + 1))
-        });
+        let held = held
+            .map(|(_, plug, wire, message, _)| Box::new(self.link(plug, &wire, &message, now, depth + 1)));
         Some(Input {
             port,
             arrived,
@@ -367,8 +427,18 @@ fn tap_seen(tap: &Tap, newest: Option<Time>, now: Time) -> TapSeen {
 
 /// For every tapped port who holds it at the moment `at`, and who gets it next.
 pub fn holders(recording: &Recording, at: Time) -> Vec<Holder> {
-    let gone = |plug: u32| recording.unplugs.iter().any(|(time, p)| *p == plug && *time <= at);
-    let came = |plug: u32| recording.plugs.iter().any(|(time, p)| p.number == plug && *time <= at);
+    let gone = |plug: u32| {
+        recording
+            .unplugs
+            .iter()
+            .any(|(time, p)| *p == plug && *time <= at)
+    };
+    let came = |plug: u32| {
+        recording
+            .plugs
+            .iter()
+            .any(|(time, p)| p.number == plug && *time <= at)
+    };
     let mut ports: BTreeMap<(String, bool), Vec<(u32, Tap)>> = BTreeMap::new();
     for (plug, tap) in recording.taps() {
         let newest = tap_newest(recording, plug, &tap, at);
@@ -401,7 +471,10 @@ fn hold(recording: &Recording, port: String, kind: How, taps: Vec<TapSeen>) -> H
     let holder = taps.iter().rev().find(|t| t.holds);
     let next = holder.map(|h| {
         let later = taps.iter().rev().find(|t| t.left_ms > h.left_ms);
-        later.map(|t| t.from.clone()).or(own.clone()).unwrap_or_else(|| "nobody".into())
+        later
+            .map(|t| t.from.clone())
+            .or(own.clone())
+            .unwrap_or_else(|| "nobody".into())
     });
     Holder {
         kind,

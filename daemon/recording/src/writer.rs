@@ -172,7 +172,9 @@ impl<W: Write> Writer<W> {
         if let Some(&id) = self.schemas.get(name) {
             return Ok(id);
         }
-        let id = self.mcap.add_schema(name, "jsonschema", schema.to_string().as_bytes())?;
+        let id = self
+            .mcap
+            .add_schema(name, "jsonschema", schema.to_string().as_bytes())?;
         self.schemas.insert(name.into(), id);
         Ok(id)
     }
@@ -209,7 +211,10 @@ impl<W: Write> Writer<W> {
     fn source(&mut self, source: &crate::manifest::Source) -> McapResult<SourceChannels> {
         let beats = self.channel(&format!("/beats/{}", source.name), schema::BEAT, &BTreeMap::new())?;
         let about = |unit: &str| {
-            BTreeMap::from([("unit".into(), unit.into()), ("layer".into(), source.name.clone())])
+            BTreeMap::from([
+                ("unit".into(), unit.into()),
+                ("layer".into(), source.name.clone()),
+            ])
         };
         let mut outputs = Vec::new();
         for output in &source.outputs {
@@ -218,7 +223,10 @@ impl<W: Write> Writer<W> {
         let mut commands = Vec::new();
         for input in source.inputs.iter().filter(|_| source.name == MOTOR) {
             let topic = format!("/commands/{}", input.name);
-            commands.push((self.message_channel(&topic, input.kind, &about(&input.unit))?, input.kind));
+            commands.push((
+                self.message_channel(&topic, input.kind, &about(&input.unit))?,
+                input.kind,
+            ));
         }
         Ok(SourceChannels {
             beats,
@@ -240,7 +248,13 @@ impl<W: Write> Writer<W> {
                 index,
                 kind,
                 reading,
-            } => self.foreign(*plug, *index, reading.number, reading.stamp, &reading.words[..kind.words()]),
+            } => self.foreign(
+                *plug,
+                *index,
+                reading.number,
+                reading.stamp,
+                &reading.words[..kind.words()],
+            ),
             Item::Plugged(time, plugged) => self.plugged(*time, plugged),
             Item::Unplugged(time, number) => self.unplugged(*time, *number),
             Item::Overrun {
@@ -331,7 +345,12 @@ impl<W: Write> Writer<W> {
         let source = usize::from(base.source);
         let mut note = BeatNote::default();
         for (slot, wrote) in base.wrote.iter().enumerate() {
-            let Some(Held { number, stamp, words: Some(words) }) = wrote else {
+            let Some(Held {
+                number,
+                stamp,
+                words: Some(words),
+            }) = wrote
+            else {
                 continue;
             };
             let wire = &mut self.sources[source].outputs[slot];
@@ -344,7 +363,10 @@ impl<W: Write> Writer<W> {
             let Some((held, fate)) = saw else { continue };
             note.saw(slot, held.number, *fate);
             let port = &self.manifest.sources[source].inputs[slot];
-            let feed = self.manifest.wire_into(&port.name).and_then(|wire| self.manifest.writer_of(wire));
+            let feed = self
+                .manifest
+                .wire_into(&port.name)
+                .and_then(|wire| self.manifest.writer_of(wire));
             if let (Some((source, slot)), Some(words)) = (feed, &held.words) {
                 // Comes twice where it is the wire's newest as well; readers take it once.
                 let wire = &self.sources[source].outputs[slot];
@@ -359,7 +381,12 @@ impl<W: Write> Writer<W> {
             }
         }
         for (slot, passed) in base.passed.iter().enumerate() {
-            if let Some(Held { stamp, words: Some(words), .. }) = passed {
+            if let Some(Held {
+                stamp,
+                words: Some(words),
+                ..
+            }) = passed
+            {
                 let (id, kind) = self.sources[source].commands[slot];
                 self.message(id, kind, base.beat.0, *stamp, words)?;
             }
@@ -376,7 +403,9 @@ impl<W: Write> Writer<W> {
 
     /// A message that a tap brought: if its wire is an attached layer's, it may not be recorded yet.
     fn tapped(&mut self, tap: u16, number: u64, stamp: Time, words: &[f64]) -> McapResult<()> {
-        let Some(tap) = self.taps.get(&tap) else { return Ok(()) };
+        let Some(tap) = self.taps.get(&tap) else {
+            return Ok(());
+        };
         let of_wire = |(plug, channels): (&u32, &PlugChannels)| {
             let index = channels.outputs.iter().position(|o| o.name == tap.from)?;
             (channels.layer == tap.layer).then_some((*plug, index))
@@ -388,7 +417,14 @@ impl<W: Write> Writer<W> {
         }
     }
 
-    fn foreign(&mut self, plug: u32, index: usize, number: u64, stamp: Time, words: &[f64]) -> McapResult<()> {
+    fn foreign(
+        &mut self,
+        plug: u32,
+        index: usize,
+        number: u64,
+        stamp: Time,
+        words: &[f64],
+    ) -> McapResult<()> {
         let wire = self.plugs.get_mut(&plug).and_then(|p| p.outputs.get_mut(index));
         let Some(wire) = wire else { return Ok(()) };
         if !wire.takes(number) {
@@ -399,8 +435,14 @@ impl<W: Write> Writer<W> {
     }
 
     fn tap(&mut self, time: Time, tap: u16, number: u64, stamp: Time) -> McapResult<()> {
-        let Some(t) = self.taps.get(&tap) else { return Ok(()) };
-        let kind = if t.how == How::Suppress { "suppress" } else { "inhibit" };
+        let Some(t) = self.taps.get(&tap) else {
+            return Ok(());
+        };
+        let kind = if t.how == How::Suppress {
+            "suppress"
+        } else {
+            "inhibit"
+        };
         let until = stamp + t.time_constant;
         let text = json!({
             "tap": tap, "kind": kind, "layer": t.layer, "from": t.from, "to": t.to, "number": number,
@@ -439,7 +481,11 @@ impl<W: Write> Writer<W> {
 
     fn unplugged(&mut self, time: Time, number: u32) -> McapResult<()> {
         let layer = self.plugs.get(&number).map(|p| p.layer.clone());
-        self.rest("/plugs", time, &json!({"layer": layer, "attached": false, "number": number}))
+        self.rest(
+            "/plugs",
+            time,
+            &json!({"layer": layer, "attached": false, "number": number}),
+        )
     }
 
     fn message(&mut self, id: u16, kind: Kind, number: u64, stamp: Time, words: &[f64]) -> McapResult<()> {
@@ -490,7 +536,10 @@ impl<W: Write> Writer<W> {
             .collect();
         let all = lost.values().sum();
         let mut metadata = BTreeMap::from([("messages".to_string(), format!("{all}"))]);
-        metadata.extend(lost.iter().map(|(wire, n)| (format!("/wires/{wire}"), n.to_string())));
+        metadata.extend(
+            lost.iter()
+                .map(|(wire, n)| (format!("/wires/{wire}"), n.to_string())),
+        );
         self.mcap.write_metadata(&Metadata {
             name: LOSSES.into(),
             metadata,

@@ -71,16 +71,16 @@ enum Listener {
 pub fn serve(endpoint: &Endpoint, shared: Arc<Shared>) -> io::Result<Metrics> {
     let (listener, address, path) = match endpoint {
         Endpoint::Port(port) => {
-            let listener = TcpListener::bind(SocketAddr::from(([127, 0, 0, 1], *port)))
-                .map_err(|e| io::Error::new(e.kind(), format!("--metrics-port {port}: {e}; choose another")))?;
+            let listener = TcpListener::bind(SocketAddr::from(([127, 0, 0, 1], *port))).map_err(|e| {
+                io::Error::new(e.kind(), format!("--metrics-port {port}: {e}; choose another"))
+            })?;
             listener.set_nonblocking(true)?;
             let address = listener.local_addr()?;
             (Listener::Port(listener), Some(address), None)
         }
         Endpoint::Socket(path) => {
-            let listener = bind(path).map_err(|e| {
-                io::Error::new(e.kind(), format!("--metrics-socket {}: {e}", path.display()))
-            })?;
+            let listener = bind(path)
+                .map_err(|e| io::Error::new(e.kind(), format!("--metrics-socket {}: {e}", path.display())))?;
             (Listener::Socket(listener), None, Some(path.clone()))
         }
     };
@@ -141,7 +141,11 @@ fn answer(mut stream: impl Read + Write, shared: &Shared) -> io::Result<()> {
         }
         Some((_, path)) if path == "/metrics" => ("405 Method Not Allowed", "text/plain", "use GET\n".into()),
         Some(_) => ("404 Not Found", "text/plain", "there is only /metrics\n".into()),
-        None => ("400 Bad Request", "text/plain", "this is not an HTTP request\n".into()),
+        None => (
+            "400 Bad Request",
+            "text/plain",
+            "this is not an HTTP request\n".into(),
+        ),
     };
     write!(
         stream,
@@ -165,7 +169,12 @@ fn read(stream: &mut impl Read) -> io::Result<Option<(String, String)>> {
         let mut request = httparse::Request::new(&mut headers);
         match request.parse(&head[..filled]) {
             Ok(httparse::Status::Complete(_)) => {
-                let path = request.path.unwrap_or_default().split('?').next().unwrap_or_default();
+                let path = request
+                    .path
+                    .unwrap_or_default()
+                    .split('?')
+                    .next()
+                    .unwrap_or_default();
                 return Ok(Some((request.method.unwrap_or_default().into(), path.into())));
             }
             Ok(httparse::Status::Partial) => {}

@@ -60,12 +60,18 @@ impl Flight {
             let manifest = &shared.recorder.manifest;
             let text = match keep(&folder, manifest, causes, &items) {
                 Ok(path) => format!("the flight recorder kept {}", path.display()),
-                Err(e) => format!("the flight recorder could not keep a file in {}: {e}", folder.display()),
+                Err(e) => format!(
+                    "the flight recorder could not keep a file in {}: {e}",
+                    folder.display()
+                ),
             };
             shared.events.note("daemon", None, text);
         };
         // Without a thread there is no file; the next halt tries again.
-        self.writing = std::thread::Builder::new().name("flight".into()).spawn(write).ok();
+        self.writing = std::thread::Builder::new()
+            .name("flight".into())
+            .spawn(write)
+            .ok();
     }
 
     /// Waits until a file that is being written is whole.
@@ -76,10 +82,20 @@ impl Flight {
     }
 }
 
-fn keep(folder: &Path, manifest: &Arc<Manifest>, causes: Causes, items: &[Item]) -> mcap::McapResult<PathBuf> {
+fn keep(
+    folder: &Path,
+    manifest: &Arc<Manifest>,
+    causes: Causes,
+    items: &[Item],
+) -> mcap::McapResult<PathBuf> {
     std::fs::create_dir_all(folder)?;
     make_room(folder, &manifest.creature)?;
-    let cause = causes.names().first().copied().unwrap_or("halt").replace(' ', "-");
+    let cause = causes
+        .names()
+        .first()
+        .copied()
+        .unwrap_or("halt")
+        .replace(' ', "-");
     let path = folder.join(format!("{}-{}-{cause}.mcap", manifest.creature, time_of_day()));
     // Under another name until it is whole.
     let part = path.with_extension("part");
@@ -99,7 +115,11 @@ fn make_room(folder: &Path, creature: &str) -> std::io::Result<()> {
         .flatten()
         .map(|entry| entry.path())
         .filter(|path| {
-            let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+            let name = path
+                .file_name()
+                .unwrap_or_default()
+                .to_string_lossy()
+                .into_owned();
             name.starts_with(&prefix) && (name.ends_with(".mcap") || name.ends_with(".part"))
         })
         .collect();
@@ -111,7 +131,10 @@ fn make_room(folder: &Path, creature: &str) -> std::io::Result<()> {
 
 /// The time of day in UTC, as 20261121T170301Z.
 fn time_of_day() -> String {
-    let seconds = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default().as_secs();
+    let seconds = SystemTime::now()
+        .duration_since(UNIX_EPOCH)
+        .unwrap_or_default()
+        .as_secs();
     let (year, month, day) = date(seconds / 86_400);
     let clock = seconds % 86_400;
     let (hour, minute, second) = (clock / 3600, clock / 60 % 60, clock % 60);
@@ -141,7 +164,11 @@ fn date(mut days: u64) -> (u64, u64, u64) {
 /// Where flight recordings go if nothing else is said: `$STATE_DIRECTORY` (as systemd sets it), else
 /// `$XDG_STATE_HOME/subsumed`, else `~/.local/state/subsumed`, else `flight` beside the control sockets.
 pub fn default_folder() -> PathBuf {
-    let set = |name: &str| std::env::var_os(name).filter(|v| !v.is_empty()).map(PathBuf::from);
+    let set = |name: &str| {
+        std::env::var_os(name)
+            .filter(|v| !v.is_empty())
+            .map(PathBuf::from)
+    };
     set("STATE_DIRECTORY")
         .or_else(|| Some(set("XDG_STATE_HOME")?.join("subsumed")))
         .or_else(|| Some(set("HOME")?.join(".local/state/subsumed")))

@@ -95,7 +95,9 @@ pub fn record(
 
 /// The causes that a beat of the motor unit noted.
 fn causes_of(item: &Item) -> Option<Causes> {
-    let Item::Beat { words, .. } = item else { return None };
+    let Item::Beat { words, .. } = item else {
+        return None;
+    };
     let entries = afsm::trace::decode(words).entries;
     entries.into_iter().find_map(|entry| match entry {
         afsm::trace::Entry::Causes(bits) => Some(Causes(bits)),
@@ -110,16 +112,18 @@ fn causes_of(item: &Item) -> Option<Causes> {
 pub fn into_file(shared: Arc<Shared>, path: &Path) -> std::io::Result<JoinHandle<()>> {
     let file = std::io::BufWriter::new(std::fs::File::create(path)?);
     let shown = path.display().to_string();
-    std::thread::Builder::new().name("recording".into()).spawn(move || {
-        let wanted = Wanted {
-            begin: Begin::Now,
-            length: None,
-            ring: None,
-        };
-        match record(&shared.recorder, wanted, file, &AtomicBool::new(false)) {
-            Ok(0) => {}
-            Ok(lost) => eprintln!("{shown}: {lost} messages were lost"),
-            Err(e) => eprintln!("{shown}: the recording broke off: {e}"),
-        }
-    })
+    std::thread::Builder::new()
+        .name("recording".into())
+        .spawn(move || {
+            let wanted = Wanted {
+                begin: Begin::Now,
+                length: None,
+                ring: None,
+            };
+            match record(&shared.recorder, wanted, file, &AtomicBool::new(false)) {
+                Ok(0) => {}
+                Ok(lost) => eprintln!("{shown}: {lost} messages were lost"),
+                Err(e) => eprintln!("{shown}: the recording broke off: {e}"),
+            }
+        })
 }

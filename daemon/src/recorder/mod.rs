@@ -43,9 +43,8 @@ const LOOK: Duration = Duration::from_millis(1);
 
 /// Causes of a halt after which the flight recorder keeps what it holds: not start, reflex and shutdown, which
 /// are everyday life.
-pub const KEPT: Causes = Causes(
-    Causes::STALE.0 | Causes::UNSOUND.0 | Causes::VITAL.0 | Causes::OVERRUN.0 | Causes::EMERGENCY.0,
-);
+pub const KEPT: Causes =
+    Causes(Causes::STALE.0 | Causes::UNSOUND.0 | Causes::VITAL.0 | Causes::OVERRUN.0 | Causes::EMERGENCY.0);
 
 /// What is to be recorded without anybody asking.
 #[derive(Clone, Debug, Default)]
@@ -137,7 +136,10 @@ impl Recorder {
         // A listener that is full loses the item, and the numbers show it; one that is gone is dropped.
         state.listeners.retain(|listener| {
             items.iter().all(|item| {
-                !matches!(listener.try_send(item.clone()), Err(std::sync::mpsc::TrySendError::Disconnected(_)))
+                !matches!(
+                    listener.try_send(item.clone()),
+                    Err(std::sync::mpsc::TrySendError::Disconnected(_))
+                )
             })
         });
     }
@@ -162,7 +164,9 @@ pub fn start(
         attached: Vec::new(),
         halts: 0,
     };
-    std::thread::Builder::new().name("recorder".into()).spawn(move || fetcher.run(&leave))
+    std::thread::Builder::new()
+        .name("recorder".into())
+        .spawn(move || fetcher.run(&leave))
 }
 
 /// The recorder's thread.
@@ -205,7 +209,9 @@ impl Fetcher {
         self.shared.recorder.tell(&items);
         let Some(flight) = &mut self.flight else { return };
         let causes = self.shared.halt.counts();
-        let kept = causes.zip(Causes::all()).filter(|(_, (cause, _))| KEPT.has(*cause));
+        let kept = causes
+            .zip(Causes::all())
+            .filter(|(_, (cause, _))| KEPT.has(*cause));
         let halts: u64 = kept.map(|((_, count), _)| count).sum();
         if halts != self.halts {
             self.halts = halts;
@@ -219,7 +225,9 @@ impl Fetcher {
         let mut items = Vec::new();
         for (source, feed) in self.feeds.iter_mut().enumerate() {
             let source = source as u16;
-            items.extend(std::iter::from_fn(|| feed.trace.next_beat()).map(|words| Item::Beat { source, words }));
+            items.extend(
+                std::iter::from_fn(|| feed.trace.next_beat()).map(|words| Item::Beat { source, words }),
+            );
             let counts = feed.gauge.counts();
             if counts.overruns != feed.counts.overruns {
                 items.push(Item::Overrun {
@@ -253,7 +261,8 @@ impl Fetcher {
                     items.push(Item::Unplugged(now, watched.number));
                 }
             }
-            self.attached.retain(|w| attached.iter().any(|a| a.number == w.number));
+            self.attached
+                .retain(|w| attached.iter().any(|a| a.number == w.number));
             for layer in &attached {
                 if self.attached.iter().all(|w| w.number != layer.number) {
                     items.push(Item::Plugged(now, Arc::new(plugged(layer))));
@@ -263,7 +272,9 @@ impl Fetcher {
         }
         for layer in &mut self.attached {
             for (index, (reader, seen)) in layer.wires.iter_mut().enumerate() {
-                let Some(reading) = reader.newer_than(*seen) else { continue };
+                let Some(reading) = reader.newer_than(*seen) else {
+                    continue;
+                };
                 *seen = reading.number;
                 items.push(Item::Wire {
                     plug: layer.number,

@@ -90,7 +90,10 @@ struct Play<'r> {
 /// Runs `recording` through the layers of `creature`, built of `kinds`.
 pub fn replay(recording: &Recording, creature: &Creature, kinds: &Kinds) -> Outcome {
     let players = player::players(recording, creature, kinds);
-    let played = players.iter().map(|p| vec![Vec::new(); p.outputs.len()]).collect();
+    let played = players
+        .iter()
+        .map(|p| vec![Vec::new(); p.outputs.len()])
+        .collect();
     let mut play = Play {
         recording,
         players,
@@ -115,7 +118,9 @@ pub fn replay(recording: &Recording, creature: &Creature, kinds: &Kinds) -> Outc
 fn doubts(recording: &Recording, creature: &Creature) -> Vec<String> {
     let mut doubts = Vec::new();
     if !recording.from_the_beginning() {
-        let begin = recording.stretch().map_or(0.0, |(first, _)| recording.manifest.seconds(first));
+        let begin = recording
+            .stretch()
+            .map_or(0.0, |(first, _)| recording.manifest.seconds(first));
         doubts.push(format!(
             "the recording begins {begin:.1} s after the creature: its modules start from their initial states here, \
              and may differ until those no longer matter (`subsumed --record FILE` records from the first beat)"
@@ -131,12 +136,18 @@ fn doubts(recording: &Recording, creature: &Creature) -> Vec<String> {
     for source in &recording.manifest.sources {
         let layer = creature.layers.iter().any(|l| l.name == source.name);
         if source.level.is_some() && !layer {
-            doubts.push(format!("the creature has no layer {:?}, the recording has", source.name));
+            doubts.push(format!(
+                "the creature has no layer {:?}, the recording has",
+                source.name
+            ));
         }
     }
     for layer in &creature.layers {
         if recording.manifest.source(&layer.name).is_none() {
-            doubts.push(format!("the recording has no layer {:?}: nothing to compare it with", layer.name));
+            doubts.push(format!(
+                "the recording has no layer {:?}: nothing to compare it with",
+                layer.name
+            ));
         }
     }
     doubts
@@ -147,12 +158,17 @@ impl Play<'_> {
     fn next(&self) -> Option<usize> {
         let due = |p: &Player| p.next().map(|b| b.commit_ns);
         let players = self.players.iter().enumerate();
-        players.filter_map(|(i, p)| Some((due(p)?, i))).min().map(|(_, i)| i)
+        players
+            .filter_map(|(i, p)| Some((due(p)?, i)))
+            .min()
+            .map(|(_, i)| i)
     }
 
     /// Runs one beat of a player, after all that it depends on.
     fn beat(&mut self, index: usize) {
-        let Some(beat) = self.players[index].next().cloned() else { return };
+        let Some(beat) = self.players[index].next().cloned() else {
+            return;
+        };
         self.players[index].busy = true;
         self.players[index].note_joined(&beat, self.recording);
         for needed in 0..self.players[index].feeds.len() {
@@ -228,7 +244,9 @@ fn compare(
     outputs: &mut BTreeMap<String, Compared>,
 ) {
     for (output, played) in player.outputs.iter().zip(played) {
-        let Some(recorded) = output.recorded(recording, player) else { continue };
+        let Some(recorded) = output.recorded(recording, player) else {
+            continue;
+        };
         let recorded: BTreeMap<u64, Words> = recorded.collect();
         let replayed: BTreeMap<u64, Words> = played.iter().map(|(beat, _, words)| (*beat, *words)).collect();
         let compared = outputs.entry(output.name.clone()).or_default();
@@ -257,9 +275,10 @@ fn compare(
 fn same(then: Option<&Words>, now: Option<&Words>) -> bool {
     match (then, now) {
         (None, None) => true,
-        (Some(then), Some(now)) => then.iter().zip(now).all(|(a, b)| {
-            a.to_bits() == b.to_bits() || !a.is_finite() && !b.is_finite()
-        }),
+        (Some(then), Some(now)) => then
+            .iter()
+            .zip(now)
+            .all(|(a, b)| a.to_bits() == b.to_bits() || !a.is_finite() && !b.is_finite()),
         _ => false,
     }
 }

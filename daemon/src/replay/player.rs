@@ -101,7 +101,10 @@ impl Wires for Cells<'_> {
         let kind = *self.kinds.get(output)?;
         let mut given = self.given.borrow_mut();
         let index = given.len();
-        let cell = self.page.writer(index, kind).expect("the page has a cell for each look");
+        let cell = self
+            .page
+            .writer(index, kind)
+            .expect("the page has a cell for each look");
         given.push((output.clone(), cell));
         self.page.reader(index, kind)
     }
@@ -181,13 +184,16 @@ impl Build<'_> {
         let recorded = self.recording.manifest.source(&layer.name);
         let known = recorded.filter(|&s| self.recording.manifest.sources[s].period == layer.period);
         let beats = known.map_or_else(|| self.invent_beats(layer), |s| self.recording.beats[s].clone());
-        let outputs = outputs.into_iter().enumerate().map(|(index, (name, kind))| Output {
-            name: name.to_string(),
-            kind,
-            reader: page.reader(index, kind),
-            seen: 0,
-            beats: self.beats_of(&name.to_string(), &beats),
-        });
+        let outputs = outputs
+            .into_iter()
+            .enumerate()
+            .map(|(index, (name, kind))| Output {
+                name: name.to_string(),
+                kind,
+                reader: page.reader(index, kind),
+                seen: 0,
+                beats: self.beats_of(&name.to_string(), &beats),
+            });
         Player {
             outputs: outputs.collect(),
             feeds: self.feeds(cells, looks),
@@ -219,7 +225,9 @@ impl Build<'_> {
             if wire.is_some() {
                 looks.push(self.register(MOTOR, &name));
             }
-            join(&self.taps, How::Suppress, &name, &cells, |end| register.suppress(end));
+            join(&self.taps, How::Suppress, &name, &cells, |end| {
+                register.suppress(end)
+            });
             looks.extend(self.taps_on(How::Suppress, &name));
             registers.push(register);
         }
@@ -248,8 +256,13 @@ impl Build<'_> {
     fn register(&self, source: &str, port: &PortName) -> Look {
         let (manifest, port) = (&self.recording.manifest, port.to_string());
         let wires = self.creature.layers.iter().flat_map(|l| &l.wires);
-        let wire = wires.clone().find(|w| w.to.to_string() == port).map(|w| w.from.to_string());
-        let found = manifest.register_of(&port).filter(|(s, _)| manifest.sources[*s].name == source);
+        let wire = wires
+            .clone()
+            .find(|w| w.to.to_string() == port)
+            .map(|w| w.from.to_string());
+        let found = manifest
+            .register_of(&port)
+            .filter(|(s, _)| manifest.sources[*s].name == source);
         let same = manifest.wire_into(&port) == wire.as_deref();
         Look::Register(found.filter(|_| same).map(|(_, slot)| slot))
     }
@@ -286,15 +299,27 @@ impl Build<'_> {
 
     /// The beat that wrote each recorded message of a wire: the one that its stamp is of.
     fn beats_of(&self, wire: &str, beats: &[Beat]) -> HashMap<u64, u64> {
-        let by_commit: HashMap<u64, u64> =
-            beats.iter().filter(|b| !b.base).map(|b| (b.commit_ns, b.number)).collect();
-        let messages = self.recording.wires.get(&(0, wire.to_string())).into_iter().flatten();
-        messages.filter_map(|m| Some((m.number, *by_commit.get(&m.stamp.0)?))).collect()
+        let by_commit: HashMap<u64, u64> = beats
+            .iter()
+            .filter(|b| !b.base)
+            .map(|b| (b.commit_ns, b.number))
+            .collect();
+        let messages = self
+            .recording
+            .wires
+            .get(&(0, wire.to_string()))
+            .into_iter()
+            .flatten();
+        messages
+            .filter_map(|m| Some((m.number, *by_commit.get(&m.stamp.0)?)))
+            .collect()
     }
 
     /// The beats of a layer that the recording does not know: on the dot.
     fn invent_beats(&self, layer: &Layer) -> Vec<Beat> {
-        let Some((first, last)) = self.recording.stretch() else { return Vec::new() };
+        let Some((first, last)) = self.recording.stretch() else {
+            return Vec::new();
+        };
         let time = |k: u64| first + layer.phase + Span(k * layer.period.0);
         let beat = |k: u64| Beat {
             number: k,
@@ -338,12 +363,17 @@ impl Output {
             let messages = recording.commands.get(&self.name)?;
             let first = player.beats.iter().find(|b| !b.base)?.number;
             return Some(Box::new(
-                messages.iter().filter(move |m| m.number >= first).map(|m| (m.number, m.words)),
+                messages
+                    .iter()
+                    .filter(move |m| m.number >= first)
+                    .map(|m| (m.number, m.words)),
             ));
         }
         recording.manifest.writer_of(&self.name)?;
         let messages = recording.wires.get(&(0, self.name.clone())).into_iter().flatten();
-        Some(Box::new(messages.filter_map(|m| Some((*self.beats.get(&m.number)?, m.words)))))
+        Some(Box::new(
+            messages.filter_map(|m| Some((*self.beats.get(&m.number)?, m.words))),
+        ))
     }
 }
 
@@ -397,7 +427,9 @@ impl Player {
         let at_least = beats.get(&seen).copied();
         let before = beats.get(&(seen + 1)).copied();
         let by_time = match before {
-            Some(before) => by_time.map(|t| t.min(before.saturating_sub(1))).filter(|_| before > 0),
+            Some(before) => by_time
+                .map(|t| t.min(before.saturating_sub(1)))
+                .filter(|_| before > 0),
             None => by_time,
         };
         at_least.max(by_time)
@@ -405,18 +437,32 @@ impl Player {
 
     /// Makes cells for the taps that joined in this beat, and passes the news on.
     pub(super) fn note_joined(&mut self, beat: &Beat, recording: &Recording) {
-        let Seat::Layer(_, hand) = &mut self.seat else { return };
+        let Seat::Layer(_, hand) = &mut self.seat else {
+            return;
+        };
         for &plug in &beat.released {
             let _ = hand.commands.push(Command::Release(plug));
         }
         for joined in &beat.joined {
-            let tap = recording.taps().find(|(plug, t)| *plug == joined.plug && t.number == joined.tap);
+            let tap = recording
+                .taps()
+                .find(|(plug, t)| *plug == joined.plug && t.number == joined.tap);
             let Some((plug, tap)) = tap else { continue };
             let outputs = recording.plugs.iter().filter(|(_, p)| p.number == plug);
-            let kind = outputs.flat_map(|(_, p)| &p.plug.outputs).find(|o| o.name == tap.from).map(|o| o.kind);
-            let (Some(kind), true) = (kind, self.joined < JOINS_MAX) else { continue };
-            let (cell, reader) = (self.spare.writer(self.joined, kind), self.spare.reader(self.joined, kind));
-            let (Some(cell), Some(reader)) = (cell, reader) else { continue };
+            let kind = outputs
+                .flat_map(|(_, p)| &p.plug.outputs)
+                .find(|o| o.name == tap.from)
+                .map(|o| o.kind);
+            let (Some(kind), true) = (kind, self.joined < JOINS_MAX) else {
+                continue;
+            };
+            let (cell, reader) = (
+                self.spare.writer(self.joined, kind),
+                self.spare.reader(self.joined, kind),
+            );
+            let (Some(cell), Some(reader)) = (cell, reader) else {
+                continue;
+            };
             self.joined += 1;
             self.feeds.push(Feed {
                 origin: Origin::Recorded(plug, tap.from),

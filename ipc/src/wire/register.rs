@@ -8,7 +8,9 @@
 //! ```
 
 use super::page::Reader;
-use super::side_tap::{Fate, Joined, Plug, TAPS_MAX, TapEnd, TapLook, TapState, join, plausible, release, sweep};
+use super::side_tap::{
+    Fate, Joined, Plug, TAPS_MAX, TapEnd, TapLook, TapState, join, plausible, release, sweep,
+};
 use crate::clock::Time;
 use crate::message::{Kind, Words};
 use crate::tap;

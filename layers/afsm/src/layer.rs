@@ -278,7 +278,14 @@ fn trace_command(tracer: &mut Tracer, command: &Command) {
         Command::Inhibit(slot, end) => (slot, end, How::Inhibit),
         Command::Release(plug) => return tracer.released(*plug),
     };
-    tracer.joined(*slot, end.gauge.number(), how, end.level, end.plug, end.time_constant);
+    tracer.joined(
+        *slot,
+        end.gauge.number(),
+        how,
+        end.level,
+        end.plug,
+        end.time_constant,
+    );
 }
 
 /// Hands a tap to the thread that may drop it. The ring has room for every tap there can be, so the tap is

@@ -70,7 +70,9 @@ pub fn trace(period: Span, registers: usize, outlets: usize) -> (Tracer, Trace) 
     // As a rule a beat takes in and writes short messages.
     let usual = HEADER + registers + 2 * outlets;
     let beats = BEHIND.0.div_ceil(period.0.max(1)) as usize;
-    let words = usual.saturating_mul(beats).clamp(TRACE_WORDS_MIN, TRACE_WORDS_MAX);
+    let words = usual
+        .saturating_mul(beats)
+        .clamp(TRACE_WORDS_MIN, TRACE_WORDS_MAX);
     let (mut ring, mut out) = RingBuffer::new(words.max(2 * beat));
     // Touch all of it: no beat is to be the first.
     while ring.push(1).is_ok() {}
@@ -336,7 +338,11 @@ fn entry(head: u64, rest: &mut impl Iterator<Item = u64>) -> Entry {
         JOINED => Entry::Joined {
             slot,
             tap: number as u16,
-            how: if number >> 16 & 1 == 1 { How::Inhibit } else { How::Suppress },
+            how: if number >> 16 & 1 == 1 {
+                How::Inhibit
+            } else {
+                How::Suppress
+            },
             level: (number >> 17) as u8,
             plug: word() as u32,
             time_constant: Span(word()),
