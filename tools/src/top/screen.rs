@@ -232,10 +232,11 @@ fn draw_taps(frame: &mut Frame<'_>, area: Rect, snapshot: &Snapshot, paint: &Pai
         let cells = [format!("{mark} {}", t.from), t.to.clone(), t.layer.clone(), left];
         Row::new(cells.into_iter().chain(counts)).style(style)
     };
+    let name = if area.width >= WIDE { 40 } else { 22 };
     let widths = [
-        Constraint::Fill(2),
-        Constraint::Fill(2),
-        Constraint::Fill(1),
+        Constraint::Length(name),
+        Constraint::Length(name - 4),
+        Constraint::Length(10),
         Constraint::Length(9),
         Constraint::Length(10),
         Constraint::Length(10),
