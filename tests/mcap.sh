@@ -16,7 +16,7 @@ clean() {
   rm -rf "$work" "/tmp/iceoryx2-$SUBSUMED_DOMAIN" /dev/shm/"iox2_${SUBSUMED_DOMAIN}_"*
 }
 trap clean EXIT
-fail() { echo "FAILED: $*"; tail -n 20 "$work"/*.log; exit 1; }
+fail() { tail -n 20 "$work"/*.log; echo "FAILED: $*"; exit 1; }
 ctl() { "$bin/subsumectl" --creature recs "$@"; }
 up() { for _ in $(seq 200); do ctl status >/dev/null 2>&1 && return; sleep 0.1; done; fail "the daemon did not come up"; }
 

@@ -23,7 +23,7 @@ with open(path, "rb") as file:
         unknown = set(told) - set(shape["properties"])
         assert not unknown, f"{channel.topic}: {unknown} are not in the schema"
         topics[channel.topic] += 1
-        if channel.topic.startswith("/wires/"):
+        if channel.topic.startswith("/wires/") and not told.get("before"):
             numbers[(channel.topic, channel.id)].add(told["number"])
 
 manifest = json.loads(metadata["subsumed"]["manifest"])

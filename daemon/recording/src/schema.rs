@@ -40,6 +40,7 @@ pub fn of_message(kind: Kind) -> (String, Value) {
     let mut properties = json!({
         "number": {"type": "integer", "description": "number on its wire: a gap is a loss"},
         "stamp_ns": {"type": "integer", "description": "when it was written, on the daemon's monotonic clock"},
+        "before": {"type": "boolean", "description": "from before the recording: held when it began"},
     });
     if let (Some(all), Value::Object(fields)) = (properties.as_object_mut(), fields) {
         all.extend(fields);

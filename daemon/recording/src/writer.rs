@@ -345,19 +345,9 @@ impl<W: Write> Writer<W> {
         let source = usize::from(base.source);
         let mut note = BeatNote::default();
         for (slot, wrote) in base.wrote.iter().enumerate() {
-            let Some(Held {
-                number,
-                stamp,
-                words: Some(words),
-            }) = wrote
-            else {
-                continue;
-            };
-            let wire = &mut self.sources[source].outputs[slot];
-            wire.first = *number;
-            wire.count(*number);
-            let (id, kind) = (wire.id, wire.kind);
-            self.message(id, kind, *number, *stamp, words)?;
+            if let Some(held) = wrote {
+                self.before(source, slot, held)?;
+            }
         }
         for (slot, saw) in base.saw.iter().enumerate() {
             let Some((held, fate)) = saw else { continue };
@@ -367,11 +357,9 @@ impl<W: Write> Writer<W> {
                 .manifest
                 .wire_into(&port.name)
                 .and_then(|wire| self.manifest.writer_of(wire));
-            if let (Some((source, slot)), Some(words)) = (feed, &held.words) {
+            if let Some((source, slot)) = feed {
                 // Comes twice where it is the wire's newest as well; readers take it once.
-                let wire = &self.sources[source].outputs[slot];
-                let (id, kind) = (wire.id, wire.kind);
-                self.message(id, kind, held.number, held.stamp, words)?;
+                self.before(source, slot, held)?;
             }
         }
         for (tap, held, fate) in &base.taps {
@@ -399,6 +387,17 @@ impl<W: Write> Writer<W> {
         self.text.clear();
         self.text.extend(text.to_string().as_bytes());
         self.send(self.sources[source].beats, base.beat.0, base.beat.2)
+    }
+
+    /// A message from before the recording begins: marked, and not counted.
+    fn before(&mut self, source: usize, slot: usize, held: &Held) -> McapResult<()> {
+        let wire = &self.sources[source].outputs[slot];
+        let (id, kind) = (wire.id, wire.kind);
+        let Some(words) = &held.words else { return Ok(()) };
+        message_text(&mut self.text, kind, held.number, held.stamp, words);
+        self.text.pop();
+        self.text.extend(b",\"before\":true}");
+        self.send(id, held.number, held.stamp)
     }
 
     /// A message that a tap brought: if its wire is an attached layer's, it may not be recorded yet.
