@@ -301,8 +301,8 @@ impl<W: Write> Writer<W> {
                     if fate == Fate::Delivered {
                         self.tap(beat.commit, tap, number, stamp)?;
                     }
-                    if fate != Fate::Fault {
-                        self.tapped(tap, number, stamp, &words)?;
+                    if let (Some((plug, index)), true) = (self.foreign_wire(tap), fate != Fate::Fault) {
+                        self.foreign(plug, index, number, stamp, &words)?;
                     }
                 }
                 Entry::Joined {
@@ -346,7 +346,8 @@ impl<W: Write> Writer<W> {
         let mut note = BeatNote::default();
         for (slot, wrote) in base.wrote.iter().enumerate() {
             if let Some(held) = wrote {
-                self.before(source, slot, held)?;
+                let wire = &self.sources[source].outputs[slot];
+                self.before(wire.id, wire.kind, held)?;
             }
         }
         for (slot, saw) in base.saw.iter().enumerate() {
@@ -359,13 +360,15 @@ impl<W: Write> Writer<W> {
                 .and_then(|wire| self.manifest.writer_of(wire));
             if let Some((source, slot)) = feed {
                 // Comes twice where it is the wire's newest as well; readers take it once.
-                self.before(source, slot, held)?;
+                let wire = &self.sources[source].outputs[slot];
+                self.before(wire.id, wire.kind, held)?;
             }
         }
         for (tap, held, fate) in &base.taps {
             note.taps.push((*tap, held.number, held.stamp.0, *fate as u8));
-            if let Some(words) = &held.words {
-                self.tapped(*tap, held.number, held.stamp, words)?;
+            if let Some((plug, index)) = self.foreign_wire(*tap) {
+                let wire = &self.plugs[&plug].outputs[index];
+                self.before(wire.id, wire.kind, held)?;
             }
         }
         for (slot, passed) in base.passed.iter().enumerate() {
@@ -390,9 +393,7 @@ impl<W: Write> Writer<W> {
     }
 
     /// A message from before the recording begins: marked, and not counted.
-    fn before(&mut self, source: usize, slot: usize, held: &Held) -> McapResult<()> {
-        let wire = &self.sources[source].outputs[slot];
-        let (id, kind) = (wire.id, wire.kind);
+    fn before(&mut self, id: u16, kind: Kind, held: &Held) -> McapResult<()> {
         let Some(words) = &held.words else { return Ok(()) };
         message_text(&mut self.text, kind, held.number, held.stamp, words);
         self.text.pop();
@@ -400,20 +401,16 @@ impl<W: Write> Writer<W> {
         self.send(id, held.number, held.stamp)
     }
 
-    /// A message that a tap brought: if its wire is an attached layer's, it may not be recorded yet.
-    fn tapped(&mut self, tap: u16, number: u64, stamp: Time, words: &[f64]) -> McapResult<()> {
-        let Some(tap) = self.taps.get(&tap) else {
-            return Ok(());
-        };
+    /// The layer and output that a tap's messages come from, if that layer is a process of its own: its wires may
+    /// not be recorded otherwise, or not yet.
+    fn foreign_wire(&self, tap: u16) -> Option<(u32, usize)> {
+        let tap = self.taps.get(&tap)?;
         let of_wire = |(plug, channels): (&u32, &PlugChannels)| {
             let index = channels.outputs.iter().position(|o| o.name == tap.from)?;
             (channels.layer == tap.layer).then_some((*plug, index))
         };
         // The newest layer of that name.
-        match self.plugs.iter().rev().find_map(of_wire) {
-            Some((plug, index)) => self.foreign(plug, index, number, stamp, words),
-            None => Ok(()),
-        }
+        self.plugs.iter().rev().find_map(of_wire)
     }
 
     fn foreign(
