@@ -54,7 +54,7 @@ for round in 1 2; do
   kill -9 $wander; wait $wander 2>/dev/null || true
   sleep 0.7
   ctl status | grep -q 'wander .*attached' && fail "a killed layer must be gone"
-  ctl events | grep -q 'layer wander (pid [0-9]*) died' || fail "the death of a layer must be logged with its name"
+  ctl events >"$work/events.log"; grep -q 'layer wander (pid [0-9]*) died' "$work/events.log" || fail "the death of a layer must be logged with its name"
 done
 grep -q '#' "$work/watch.log" || fail "watching a wire must show messages"
 sleep 4
