@@ -25,6 +25,8 @@ pub(crate) struct Wanted {
 /// Records into `path` until Ctrl-C, or as `wanted` says.
 pub(crate) fn record(creature: &str, path: &Path, as_json: bool, wanted: &Wanted) -> Result<(), String> {
     let shown = path.display();
+    // Before the file: without a daemon, what is there already stays.
+    drop(call(creature)?);
     let file = std::fs::File::create(path).map_err(|e| format!("{shown}: cannot be written: {e}"))?;
     let leave = Arc::new(AtomicBool::new(false));
     for signal in [signal_hook::consts::SIGTERM, signal_hook::consts::SIGINT] {

@@ -76,17 +76,7 @@ pub(crate) fn chain_text(link: &Link) -> String {
 }
 
 fn link_text(link: &Link, first: &str, rest: &str, text: &mut String) {
-    let value = match link.value.as_slice() {
-        [] => "(pulse)".to_string(),
-        [one] => format!("{one:.3}"),
-        many => format!(
-            "[{}]",
-            many.iter()
-                .map(|v| format!("{v:.2}"))
-                .collect::<Vec<_>>()
-                .join(" ")
-        ),
-    };
+    let value = value_text(&link.value);
     let unit = if link.unit.is_empty() {
         String::new()
     } else {
@@ -108,11 +98,25 @@ fn link_text(link: &Link, first: &str, rest: &str, text: &mut String) {
     if !link.halted.is_empty() {
         *text += &format!("{rest}    the halt gate was closed: {}\n", link.halted.join(", "));
     }
+    if link.inhibited > 0 {
+        *text += &format!("{rest}    {} messages inhibited since\n", link.inhibited);
+    }
     if !link.traced && !link.inputs.is_empty() {
         *text += &format!("{rest}    (what it looked at is told from stamps)\n");
     }
     for (k, input) in link.inputs.iter().enumerate() {
         input_text(input, rest, k + 1 == link.inputs.len(), text);
+    }
+}
+
+fn value_text(value: &[f64]) -> String {
+    match value {
+        [] => "(pulse)".to_string(),
+        [one] => format!("{one:.3}"),
+        many => {
+            let words: Vec<String> = many.iter().map(|v| format!("{v:.2}")).collect();
+            format!("[{}]", words.join(" "))
+        }
     }
 }
 
@@ -133,9 +137,14 @@ fn input_text(input: &Input, rest: &str, last: bool, text: &mut String) {
     for tap in &input.taps {
         *text += &format!("{inner}{}\n", tap_text(tap));
     }
-    if input.rejected > 0 {
+    if let Some(newest) = &input.newest_rejected {
         let (n, s) = (input.rejected, if input.rejected == 1 { "" } else { "s" });
-        *text += &format!("{inner}{n} message{s} of its own wire rejected since\n");
+        let ago = newest.age_ms.map_or(String::new(), |ms| format!(", {}", age(ms)));
+        let said = value_text(&newest.value);
+        *text += &format!(
+            "{inner}{n} message{s} of {} rejected since, the newest {said}{ago}\n",
+            newest.wire
+        );
     }
     if let Some(held) = &input.held {
         link_text(held, &inner, &inner, text);

@@ -24,6 +24,12 @@ pub struct Ring {
     bytes_max: usize,
     items: VecDeque<Item>,
     bytes: usize,
+    past: Past,
+}
+
+/// What has fallen out of a ring, folded into what it left behind.
+#[derive(Clone, Debug)]
+struct Past {
     sources: Vec<SourceBase>,
     plugs: BTreeMap<u32, (Time, Arc<Plugged>)>,
 }
@@ -62,15 +68,18 @@ impl Ring {
                 begun: false,
             });
         let plugs = manifest.plugs.iter();
+        let past = Past {
+            sources: sources.collect(),
+            plugs: plugs
+                .map(|p| (p.number, (Time(manifest.began_ns), Arc::new(p.clone()))))
+                .collect(),
+        };
         Ring {
             span,
             bytes_max,
             items: VecDeque::new(),
             bytes: 0,
-            sources: sources.collect(),
-            plugs: plugs
-                .map(|p| (p.number, (Time(manifest.began_ns), Arc::new(p.clone()))))
-                .collect(),
+            past,
         }
     }
 
@@ -86,13 +95,34 @@ impl Ring {
             }
             self.bytes -= oldest.bytes();
             if let Some(item) = self.items.pop_front() {
-                self.fold(&item);
+                self.past.fold(&item);
             }
         }
     }
 
     /// Everything in it, after what was before.
     pub fn snapshot(&self) -> Vec<Item> {
+        self.past.items().chain(self.items.iter().cloned()).collect()
+    }
+
+    /// What every source holds now: how a recording begins that has no use for the past.
+    pub fn state(&self) -> Vec<Item> {
+        let mut past = self.past.clone();
+        self.items.iter().for_each(|item| past.fold(item));
+        past.items().collect()
+    }
+
+    /// How long ago its oldest item happened, counted from its newest.
+    pub fn covers(&self) -> Span {
+        match (self.items.front(), self.items.back()) {
+            (Some(first), Some(last)) => last.time().since(first.time()),
+            _ => Span::ZERO,
+        }
+    }
+}
+
+impl Past {
+    fn items(&self) -> impl Iterator<Item = Item> {
         let begun = self.sources.iter().filter(|s| s.begun);
         let bases = begun.map(|s| {
             let taps = s.taps.iter();
@@ -103,28 +133,10 @@ impl Ring {
                 ..s.base.clone()
             }))
         });
-        let plugs = self
-            .plugs
-            .values()
-            .map(|(time, plug)| Item::Plugged(*time, plug.clone()));
-        plugs.chain(bases).chain(self.items.iter().cloned()).collect()
-    }
-
-    /// What every source holds now: how a recording begins that has no use for the past.
-    pub fn state(&self) -> Vec<Item> {
-        let mut folded = self.clone();
-        for item in std::mem::take(&mut folded.items) {
-            folded.fold(&item);
-        }
-        folded.snapshot()
-    }
-
-    /// How long ago its oldest item happened, counted from its newest.
-    pub fn covers(&self) -> Span {
-        match (self.items.front(), self.items.back()) {
-            (Some(first), Some(last)) => last.time().since(first.time()),
-            _ => Span::ZERO,
-        }
+        let plugs = self.plugs.values();
+        plugs
+            .map(|(time, plug)| Item::Plugged(*time, plug.clone()))
+            .chain(bases)
     }
 
     fn fold(&mut self, item: &Item) {

@@ -52,6 +52,8 @@ pub struct Link {
     pub halted: Vec<String>,
     /// Whether the inputs are what the beat looked at, not what stamps suggest.
     pub traced: bool,
+    /// How many messages of the wire were inhibited since, until it was looked at.
+    pub inhibited: u64,
     /// Whether it was explained before, further up.
     pub above: bool,
     /// What its module held.
@@ -71,8 +73,23 @@ pub struct Input {
     pub taps: Vec<TapSeen>,
     /// How many messages of its own wire were rejected since the one it held came.
     pub rejected: u64,
+    /// The newest of them.
+    pub newest_rejected: Option<Rejected>,
     /// The message it held; none if it never had one.
     pub held: Option<Box<Link>>,
+}
+
+/// A message that a tap's window kept out.
+#[derive(Clone, Debug, Serialize)]
+pub struct Rejected {
+    /// Its wire.
+    pub wire: String,
+    /// Its number.
+    pub number: u64,
+    /// How old it was, in milliseconds; none if it is not known any more.
+    pub age_ms: Option<f64>,
+    /// What it said.
+    pub value: Vec<f64>,
 }
 
 /// A tap, as it stood at some moment.
@@ -218,6 +235,7 @@ impl Chain<'_> {
             pid: None,
             halted: Vec::new(),
             traced: true,
+            inhibited: 0,
             above: false,
             inputs: vec![input.clone()],
             ..held.clone()
@@ -239,6 +257,7 @@ impl Chain<'_> {
             pid: None,
             halted: Vec::new(),
             traced: true,
+            inhibited: 0,
             above: false,
             inputs: Vec::new(),
         }
@@ -255,6 +274,9 @@ impl Chain<'_> {
             if written.name != MOTOR {
                 link.module = wire.split_once('.').map(|(module, _)| module.to_string());
             }
+            let beats = self.recording.beats[source].iter();
+            let since = beats.filter(|b| b.commit_ns > message.stamp.0 && b.commit_ns <= at.0);
+            link.inhibited = since.filter(|b| b.dropped.contains(&slot)).count() as u64;
             link
         } else {
             self.foreign(plug, wire, message, at)
@@ -335,6 +357,7 @@ impl Chain<'_> {
                 tap: None,
                 taps: Vec::new(),
                 rejected: 0,
+                newest_rejected: None,
                 held,
             });
         }
@@ -392,7 +415,17 @@ impl Chain<'_> {
             .iter()
             .flat_map(|b| &b.rejected)
             .filter(|(s, _)| *s == slot);
-        let rejected = kept_out.count() as u64;
+        let rejected = kept_out.clone().count() as u64;
+        let newest_rejected = wire.as_ref().zip(kept_out.last()).map(|(wire, &(_, number))| {
+            let message = recording.message(0, wire, number);
+            let kind = recording.manifest.sources[source].inputs[slot].kind;
+            Rejected {
+                wire: wire.clone(),
+                number,
+                age_ms: message.map(|m| now.since(m.stamp).as_millis_f64()),
+                value: message.map_or(Vec::new(), |m| m.words[..kind.words()].to_vec()),
+            }
+        });
         let arrived = held.as_ref().is_some_and(|(i, ..)| *i == index);
         let tap = held.as_ref().and_then(|(.., tap)| tap.clone());
         let held = held
@@ -403,6 +436,7 @@ impl Chain<'_> {
             tap,
             taps: standing,
             rejected,
+            newest_rejected,
             held,
         })
     }

@@ -4,8 +4,8 @@
 
 use rustix::io::Errno;
 use rustix::mm::{MlockAllFlags, mlockall};
-use rustix::process::{Resource, Rlimit, setrlimit};
-use rustix::thread::{CpuSet, sched_setaffinity};
+use rustix::process::{Resource, Rlimit, getrlimit, setrlimit};
+use rustix::thread::{CapabilitySet, CpuSet, capabilities, sched_setaffinity};
 use thread_priority::{
     RealtimeThreadSchedulePolicy, ScheduleParams, ThreadPriority, ThreadSchedulePolicy,
     set_thread_priority_and_policy, thread_native_id,
@@ -43,6 +43,16 @@ pub fn lock_memory() -> Result<(), Refusal> {
         grants: "granted by CAP_IPC_LOCK, by LimitMEMLOCK=infinity in the unit, or by `ulimit -l unlimited`"
             .into(),
     })
+}
+
+/// How much memory this process may lock; `None` if there is no limit.
+pub fn lockable_bytes() -> Option<u64> {
+    let free = capabilities(None).is_ok_and(|c| c.effective.contains(CapabilitySet::IPC_LOCK));
+    if free {
+        None
+    } else {
+        getrlimit(Resource::Memlock).current
+    }
 }
 
 /// Sees to it that a runaway real-time thread ends the process instead of starving the host.

@@ -48,7 +48,7 @@ pub fn record(
     let mut writer = Writer::new(out, &recorder.manifest)?;
     let mut ring = wanted
         .ring
-        .map(|span| Ring::new(&recorder.manifest, span, recording::ring::RING_BYTES_MAX));
+        .map(|span| Ring::new(&recorder.manifest, span, super::ring_bytes()));
     let (began, mut flushed) = (Instant::now(), Instant::now());
     let mut halted: Option<Instant> = None;
     let mut last_causes = Causes::NONE;
@@ -68,7 +68,7 @@ pub fn record(
         if over || kept || end.load(Ordering::Relaxed) {
             break;
         }
-        match items.recv_timeout(Duration::from_millis(20)) {
+        match items.next(Duration::from_millis(20)) {
             Ok(item) => {
                 if wanted.ring.is_some() && halted.is_none() {
                     let causes = causes_of(&item).unwrap_or(last_causes);

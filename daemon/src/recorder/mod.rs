@@ -12,8 +12,8 @@ pub mod flight;
 pub mod listener;
 
 use std::path::PathBuf;
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::sync::{Arc, Mutex};
 use std::thread::JoinHandle;
 use std::time::Duration;
@@ -24,6 +24,7 @@ use ipc::wire::Reader;
 use recording::{Item, Manifest, Plugged, Ring};
 
 use crate::executor::gauge::{BeatCounts, BeatGauge};
+use crate::executor::host;
 use crate::gate::Causes;
 use crate::plugs::Attached;
 use crate::running::Shared;
@@ -32,8 +33,8 @@ use flight::Flight;
 /// How long the flight recorder remembers.
 pub const FLIGHT_SPAN: Span = Span::secs(60);
 
-/// Most items that wait for a listener: over half a second of a hundred layers at 1 kHz.
-const LISTENER_ITEMS_MAX: usize = 1 << 16;
+/// Most memory that items waiting for a listener take: seconds of a hundred wires at 1 kHz.
+const LISTENER_BYTES_MAX: usize = 16 << 20;
 
 /// How often traces are fetched; they hold half a second.
 const FETCH: Duration = Duration::from_millis(10);
@@ -75,7 +76,44 @@ pub struct Recorder {
 
 struct State {
     ring: Ring,
-    listeners: Vec<SyncSender<Item>>,
+    listeners: Vec<Listener>,
+}
+
+/// The recorder's end of what a listener hears.
+struct Listener {
+    items: Sender<Item>,
+    /// Bytes that wait; counted up here, down by the listener.
+    waiting: Arc<AtomicUsize>,
+}
+
+impl Listener {
+    /// Tells it an item, unless too many wait: then it loses the item, and the numbers show it. False if it is gone.
+    fn tell(&self, item: &Item) -> bool {
+        // Relaxed: a bound that is off by an item is still a bound.
+        if self.waiting.load(Ordering::Relaxed) > LISTENER_BYTES_MAX {
+            return Arc::strong_count(&self.waiting) > 1;
+        }
+        self.waiting.fetch_add(item.bytes(), Ordering::Relaxed);
+        self.items.send(item.clone()).is_ok()
+    }
+}
+
+/// A listener's end.
+pub struct Heard {
+    items: Receiver<Item>,
+    waiting: Arc<AtomicUsize>,
+}
+
+impl Heard {
+    /// The next item, if one comes in time.
+    ///
+    /// # Errors
+    /// When none does, or none ever will.
+    pub fn next(&self, wait: Duration) -> Result<Item, RecvTimeoutError> {
+        let item = self.items.recv_timeout(wait)?;
+        self.waiting.fetch_sub(item.bytes(), Ordering::Relaxed);
+        Ok(item)
+    }
 }
 
 /// What one beating thread has to tell.
@@ -102,7 +140,7 @@ impl Recorder {
     /// A recorder of the creature that `manifest` describes; remembers for [`FLIGHT_SPAN`] if it is to fly.
     pub fn new(manifest: Manifest, flies: bool) -> Recorder {
         let span = if flies { FLIGHT_SPAN } else { Span::ZERO };
-        let ring = Ring::new(&manifest, span, recording::ring::RING_BYTES_MAX);
+        let ring = Ring::new(&manifest, span, ring_bytes());
         Recorder {
             manifest: Arc::new(manifest),
             state: Mutex::new(State {
@@ -113,15 +151,22 @@ impl Recorder {
     }
 
     /// Listens from now on: what comes first, and then every item as it happens.
-    pub fn listen(&self, begin: Begin) -> (Vec<Item>, Receiver<Item>) {
-        let (sender, receiver) = sync_channel(LISTENER_ITEMS_MAX);
+    pub fn listen(&self, begin: Begin) -> (Vec<Item>, Heard) {
+        let (sender, items) = channel();
+        let waiting = Arc::new(AtomicUsize::new(0));
         let mut state = self.lock();
+        let ring = state.ring.clone();
+        state.listeners.push(Listener {
+            items: sender,
+            waiting: waiting.clone(),
+        });
+        // Going through it takes a while; the recorder must not wait for that.
+        drop(state);
         let first = match begin {
-            Begin::Now => state.ring.state(),
-            Begin::Past => state.ring.snapshot(),
+            Begin::Now => ring.state(),
+            Begin::Past => ring.snapshot(),
         };
-        state.listeners.push(sender);
-        (first, receiver)
+        (first, Heard { items, waiting })
     }
 
     fn lock(&self) -> std::sync::MutexGuard<'_, State> {
@@ -133,16 +178,16 @@ impl Recorder {
         for item in items {
             state.ring.push(item.clone());
         }
-        // A listener that is full loses the item, and the numbers show it; one that is gone is dropped.
-        state.listeners.retain(|listener| {
-            items.iter().all(|item| {
-                !matches!(
-                    listener.try_send(item.clone()),
-                    Err(std::sync::mpsc::TrySendError::Disconnected(_))
-                )
-            })
-        });
+        state
+            .listeners
+            .retain(|listener| items.iter().all(|item| listener.tell(item)));
     }
+}
+
+/// How much memory a ring may take: where locked memory is limited, a part of that, so that the daemon's own is safe.
+fn ring_bytes() -> usize {
+    let spare = host::lockable_bytes().map_or(u64::MAX, |limit| limit / 8);
+    recording::ring::RING_BYTES_MAX.min(usize::try_from(spare).unwrap_or(usize::MAX))
 }
 
 /// Starts the recorder's thread.
