@@ -411,21 +411,24 @@ impl Chain<'_> {
             }
         }
         let since = held.as_ref().map_or(0, |(i, ..)| *i);
-        let kept_out = beats[since..]
+        let mut kept_out = beats[since..]
             .iter()
             .flat_map(|b| &b.rejected)
             .filter(|(s, _)| *s == slot);
         let rejected = kept_out.clone().count() as u64;
-        let newest_rejected = wire.as_ref().zip(kept_out.last()).map(|(wire, &(_, number))| {
-            let message = recording.message(0, wire, number);
-            let kind = recording.manifest.sources[source].inputs[slot].kind;
-            Rejected {
-                wire: wire.clone(),
-                number,
-                age_ms: message.map(|m| now.since(m.stamp).as_millis_f64()),
-                value: message.map_or(Vec::new(), |m| m.words[..kind.words()].to_vec()),
-            }
-        });
+        let newest_rejected = wire
+            .as_ref()
+            .zip(kept_out.next_back())
+            .map(|(wire, &(_, number))| {
+                let message = recording.message(0, wire, number);
+                let kind = recording.manifest.sources[source].inputs[slot].kind;
+                Rejected {
+                    wire: wire.clone(),
+                    number,
+                    age_ms: message.map(|m| now.since(m.stamp).as_millis_f64()),
+                    value: message.map_or(Vec::new(), |m| m.words[..kind.words()].to_vec()),
+                }
+            });
         let arrived = held.as_ref().is_some_and(|(i, ..)| *i == index);
         let tap = held.as_ref().and_then(|(.., tap)| tap.clone());
         let held = held
