@@ -8,13 +8,18 @@ set -euo pipefail
 bin=$(realpath "${1:-target/release}")
 work=$(mktemp -d)
 export SUBSUMED_DOMAIN="outside$$" SUBSUMED_RUN="$work/run"
-daemon=""
+daemon="" wander=""
 clean() {
+  [ -n "$wander" ] && kill -9 "$wander" 2>/dev/null || true
   [ -n "$daemon" ] && kill -9 "$daemon" 2>/dev/null || true
   rm -rf "$work" "/tmp/iceoryx2-$SUBSUMED_DOMAIN" /dev/shm/"iox2_${SUBSUMED_DOMAIN}_"*
 }
 trap clean EXIT
-fail() { echo "FAILED: $*"; tail -n 20 "$work"/*.log; exit 1; }
+state() {
+  [ -n "$daemon" ] || { echo "the daemon has left"; return; }
+  if kill -0 "$daemon" 2>/dev/null; then echo "the daemon lives"; else wait "$daemon" 2>/dev/null; echo "the daemon ended with status $?"; fi
+}
+fail() { echo "FAILED: $*"; state || true; tail -n 20 "$work"/*.log; exit 1; }
 ctl() { "$bin/subsumectl" --creature outside "$@"; }
 field() { ctl status --json | tr ',{}[]' '\n' | grep -m1 "^\"$1\":" | cut -d: -f2- | tr -d '"'; }
 
@@ -34,8 +39,8 @@ for _ in $(seq 100); do ctl status >/dev/null 2>&1 && break; sleep 0.1; done
 ctl status >/dev/null || fail "the daemon did not come up"
 [ "$(field halted)" = false ] || { sleep 1; [ "$(field halted)" = false ] || fail "the body must be free once level 0 beats"; }
 
-# Threads that are real-time by name: layers and the motor unit.
-threads() { for t in /proc/$daemon/task/*; do case $(cat "$t/comm") in avoid|motor) basename "$t";; esac; done; }
+# Threads that are real-time by name: layers, the motor unit and the watchdog.
+threads() { for t in /proc/$daemon/task/*; do case $(cat "$t/comm") in avoid|motor|watchdog) basename "$t";; esac; done; }
 faults() { local sum=0; for t in $(threads); do sum=$((sum + $(awk '{print $10 + $12}' "/proc/$daemon/task/$t/stat"))); done; echo $sum; }
 sleep 1
 before=$(faults)
@@ -83,6 +88,7 @@ if command -v chromium >/dev/null; then
     || fail "chromium failed"
   grep -q 'data-connected="true"' "$work/dom.html" || fail "the page does not reach the daemon"
   grep -q 'data-module="collide"' "$work/dom.html" || fail "the page does not show the wiring"
+  grep -q 'data-wire="sonar.map"[^>]*aria-label' "$work/dom.html" || fail "the page does not bring the wires to life"
 else
   echo "skipped: the page in a browser (no chromium)"
 fi

@@ -1,60 +1,83 @@
 //! The control socket: answers tools and layer processes.
 //!
-//! Must never let a caller make the daemon allocate without bound or wait for long: lines, connections and
-//! silences are bounded, and every caller has a thread of its own.
+//! Must never let a caller make the daemon allocate without bound or wait for long: lines, their time,
+//! connections and silences are bounded, every caller has a thread of its own, and when all places are
+//! taken the one that has been silent for longest makes room. A layer that is attached keeps its place.
 
 use std::io;
 use std::os::unix::fs::PermissionsExt;
 use std::os::unix::net::{UnixListener, UnixStream};
 use std::path::PathBuf;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::JoinHandle;
 use std::time::Duration;
 
-use ipc::clock::Span;
-use ipc::control::{Connection, Reply, Request, Versions, run_dir, socket_path};
+use ipc::clock::{self, Span};
+use ipc::control::{
+    Connection, Peer, REQUEST_MAX, Reply, Request, Versions, run_dir, socket_path, timed_out,
+};
 
+use crate::admission::Admission;
+use crate::callers::{CALLERS_MAX, Caller, Callers};
 use crate::gate::Causes;
+use crate::plugs::Joined;
 use crate::recorder::Begin;
 use crate::recorder::listener::{self, Wanted};
 use crate::running::Shared;
 
-/// Most callers at once: as many layers as may attach, and as many tools.
-const CALLERS_MAX: usize = 64;
-
 /// How long a caller may be silent, unless it is a layer.
-const SILENCE: Duration = Duration::from_secs(30);
+const SILENCE: Span = Span::secs(30);
+
+/// How long a request may take from its first byte to its end.
+const LINE_TIME: Span = Span::secs(2);
+
+/// How long a caller may take to read an answer.
+const ANSWER_TIME: Duration = Duration::from_secs(5);
+
+/// How long a caller may take to read the next stretch of a recording.
+const RECORD_TIME: Duration = Duration::from_secs(30);
+
+/// How often a caller's thread looks whether it is to end.
+const LOOK: Duration = Duration::from_millis(200);
 
 /// The socket, and the thread that answers.
 pub struct Control {
     path: PathBuf,
     leave: Arc<AtomicBool>,
+    callers: Arc<Callers>,
     thread: Option<JoinHandle<()>>,
 }
 
 impl Control {
-    /// Opens the socket of `name` and answers on it.
+    /// Opens the socket of `name` and answers those on it whom `admission` admits.
     ///
     /// # Errors
     /// [`io::ErrorKind::AddrInUse`] when a daemon of that name answers; otherwise what the host refused.
-    pub fn open(name: &str, shared: Arc<Shared>) -> io::Result<Control> {
+    pub fn open(name: &str, shared: Arc<Shared>, admission: Admission) -> io::Result<Control> {
         let path = socket_path(name);
         claim(name)?;
         std::fs::create_dir_all(run_dir())?;
         let _ = std::fs::remove_file(&path);
         let listener = UnixListener::bind(&path)?;
-        // The same user only.
-        std::fs::set_permissions(&path, std::fs::Permissions::from_mode(0o600))?;
+        std::fs::set_permissions(&path, std::fs::Permissions::from_mode(admission.socket_mode()))?;
         listener.set_nonblocking(true)?;
         let leave = Arc::new(AtomicBool::new(false));
-        let leaving = leave.clone();
+        let callers = Arc::new(Callers::default());
+        let door = Door {
+            listener,
+            shared,
+            admission,
+            callers: callers.clone(),
+            leave: leave.clone(),
+        };
         let thread = std::thread::Builder::new()
             .name("control".into())
-            .spawn(move || accept(&listener, &shared, &leaving))?;
+            .spawn(move || door.attend())?;
         Ok(Control {
             path,
             leave,
+            callers,
             thread: Some(thread),
         })
     }
@@ -84,48 +107,92 @@ impl Drop for Control {
         if let Some(thread) = self.thread.take() {
             let _ = thread.join();
         }
+        // Their threads hold what the daemon wants to take apart.
+        self.callers.send_away();
+        for _ in 0..100 {
+            if self.callers.is_empty() {
+                break;
+            }
+            std::thread::sleep(Duration::from_millis(10));
+        }
         let _ = std::fs::remove_file(&self.path);
         // Only if it is empty and ours; somebody else's socket may be in it.
         let _ = std::fs::remove_dir(run_dir());
     }
 }
 
-fn accept(listener: &UnixListener, shared: &Arc<Shared>, leaving: &AtomicBool) {
-    let callers = Arc::new(AtomicUsize::new(0));
-    while !leaving.load(Ordering::Relaxed) {
-        match listener.accept() {
-            Ok((stream, _)) => {
-                if callers.load(Ordering::Relaxed) >= CALLERS_MAX {
-                    continue;
-                }
-                callers.fetch_add(1, Ordering::Relaxed);
-                let (shared, counted) = (shared.clone(), callers.clone());
-                let answer = move || {
-                    let _ = stream.set_nonblocking(false);
-                    let _ = answer_all(stream, &shared);
-                    counted.fetch_sub(1, Ordering::Relaxed);
-                };
-                if std::thread::Builder::new()
-                    .name("caller".into())
-                    .stack_size(256 << 10)
-                    .spawn(answer)
-                    .is_err()
-                {
-                    callers.fetch_sub(1, Ordering::Relaxed);
-                }
+/// Where callers come in.
+struct Door {
+    listener: UnixListener,
+    shared: Arc<Shared>,
+    admission: Admission,
+    callers: Arc<Callers>,
+    leave: Arc<AtomicBool>,
+}
+
+impl Door {
+    fn attend(&self) {
+        while !self.leave.load(Ordering::Relaxed) {
+            match self.listener.accept() {
+                Ok((stream, _)) => self.let_in(stream),
+                Err(_) => std::thread::sleep(Duration::from_millis(10)),
             }
-            Err(_) => std::thread::sleep(Duration::from_millis(10)),
+        }
+    }
+
+    fn let_in(&self, stream: UnixStream) {
+        if self.callers.len() >= CALLERS_MAX {
+            self.callers.make_room(clock::monotonic());
+            // Its thread leaves within a blink; should it not, this caller has to come again.
+            for _ in 0..20 {
+                if self.callers.len() < CALLERS_MAX {
+                    break;
+                }
+                std::thread::sleep(Duration::from_millis(1));
+            }
+            if self.callers.len() >= CALLERS_MAX {
+                return;
+            }
+        }
+        let Ok(caller) = self.callers.enter(&stream, clock::monotonic()) else {
+            return;
+        };
+        let (shared, admission, callers) =
+            (self.shared.clone(), self.admission.clone(), self.callers.clone());
+        let number = caller.number;
+        let answer = move || {
+            let _ = answer_all(stream, &caller, &shared, &admission);
+            drop(shared);
+            callers.leave(caller.number);
+        };
+        let builder = std::thread::Builder::new().name("caller".into());
+        if builder.stack_size(256 << 10).spawn(answer).is_err() {
+            self.callers.leave(number);
         }
     }
 }
 
-fn answer_all(stream: UnixStream, shared: &Shared) -> io::Result<()> {
-    stream.set_read_timeout(Some(SILENCE))?;
-    stream.set_write_timeout(Some(SILENCE))?;
-    let mut connection = Connection::over(stream)?;
+fn answer_all(stream: UnixStream, caller: &Caller, shared: &Shared, admission: &Admission) -> io::Result<()> {
+    stream.set_nonblocking(false)?;
+    stream.set_read_timeout(Some(LOOK))?;
+    stream.set_write_timeout(Some(ANSWER_TIME))?;
+    let peer = Peer::of(&stream)?;
+    let connection = Connection::over(stream)?;
+    let mut connection = connection
+        .with_lines_up_to(REQUEST_MAX)
+        .with_lines_within(LINE_TIME);
+    if !admission.admits(peer) {
+        let text = format!(
+            "user {} (pid {}) was turned away: the creature does not name it",
+            peer.user, peer.pid
+        );
+        shared.events.note("caller", None, text);
+        let reasons = vec![format!("user {} may not speak to this creature", peer.user)];
+        return connection.send(&Reply::Refused { reasons });
+    }
     let mut plugged = None;
-    let ended = converse(&mut connection, shared, &mut plugged);
-    if let Some(number) = plugged {
+    let ended = converse(&mut connection, caller, shared, peer, &mut plugged);
+    if let Some(Joined { number, .. }) = plugged {
         let why = if matches!(ended, Ok(Farewell::Said)) {
             "detached"
         } else {
@@ -140,16 +207,28 @@ fn answer_all(stream: UnixStream, shared: &Shared) -> io::Result<()> {
 enum Farewell {
     /// It said so.
     Said,
-    /// Its connection closed.
+    /// Its connection closed, or was.
     None,
 }
 
-fn converse(connection: &mut Connection, shared: &Shared, plugged: &mut Option<u32>) -> io::Result<Farewell> {
+fn converse(
+    connection: &mut Connection,
+    caller: &Caller,
+    shared: &Shared,
+    peer: Peer,
+    plugged: &mut Option<Joined>,
+) -> io::Result<Farewell> {
     let mut greeted = false;
     loop {
         let request = match connection.receive::<Request>() {
             Ok(Some(request)) => request,
             Ok(None) => return Ok(Farewell::None),
+            Err(e) if timed_out(&e) => {
+                if is_over(caller, plugged.as_ref()) {
+                    return Ok(Farewell::None);
+                }
+                continue;
+            }
             Err(e) if e.kind() == io::ErrorKind::InvalidData => {
                 let reasons = vec![format!("not a request: {e}")];
                 connection.send(&Reply::Refused { reasons })?;
@@ -157,6 +236,7 @@ fn converse(connection: &mut Connection, shared: &Shared, plugged: &mut Option<u
             }
             Err(e) => return Err(e),
         };
+        caller.speaks(clock::monotonic());
         let reply = match request {
             Request::Hello { versions, program } => {
                 greeted = versions == Versions::ours();
@@ -168,18 +248,26 @@ fn converse(connection: &mut Connection, shared: &Shared, plugged: &mut Option<u
             Request::Plug(_) if plugged.is_some() => Reply::Refused {
                 reasons: vec!["one layer a connection".into()],
             },
-            Request::Plug(plug) => match shared.plugs.attach(plug, &shared.domain) {
-                Ok(number) => {
-                    *plugged = Some(number);
-                    // A layer speaks with its wires from now on; the socket only tells that it lives.
-                    connection.socket().set_read_timeout(None)?;
-                    Reply::Plugged { plug: number }
+            // The process that speaks is the one whose life counts, whatever it says.
+            Request::Plug(plug) => {
+                let pid = peer.pid.unsigned_abs();
+                match shared
+                    .plugs
+                    .attach(ipc::control::Plug { pid, ..plug }, &shared.domain)
+                {
+                    Ok(joined) => {
+                        let number = joined.number;
+                        caller.stays();
+                        *plugged = Some(joined);
+                        Reply::Plugged { plug: number }
+                    }
+                    Err(reasons) => Reply::Refused { reasons },
                 }
-                Err(reasons) => Reply::Refused { reasons },
-            },
+            }
             Request::Unplug => return Ok(Farewell::Said),
             Request::Record { past, seconds, ring } => {
                 connection.send(&Reply::Recording)?;
+                caller.records();
                 record(connection, shared, past, seconds, ring)?;
                 return Ok(Farewell::Said);
             }
@@ -201,6 +289,7 @@ fn record(
     let end = Arc::new(AtomicBool::new(false));
     let (mut other_end, told) = (socket.try_clone()?, end.clone());
     other_end.set_read_timeout(None)?;
+    other_end.set_write_timeout(Some(RECORD_TIME))?;
     let listen = move || {
         let mut byte = [0];
         while matches!(io::Read::read(&mut other_end, &mut byte), Ok(1..)) {}
@@ -221,6 +310,15 @@ fn record(
     recorded.map(drop).map_err(io::Error::other)
 }
 
+/// Whether a caller that says nothing has to go. A layer speaks with its wires; its socket only tells that it
+/// lives.
+fn is_over(caller: &Caller, plugged: Option<&Joined>) -> bool {
+    match plugged {
+        Some(joined) => joined.dismissed.load(Ordering::Relaxed),
+        None => clock::monotonic().since(caller.last_spoke()) > SILENCE,
+    }
+}
+
 fn greet(theirs: &Versions, program: &str, shared: &Shared) -> Reply {
     let ours = Versions::ours();
     if *theirs == ours {
@@ -229,11 +327,12 @@ fn greet(theirs: &Versions, program: &str, shared: &Shared) -> Reply {
             creature: shared.name.clone(),
         };
     }
+    let program: String = program.chars().take(48).collect();
     let reason =
         format!("{program} was built for {theirs}; this daemon for {ours}: build both from one version");
     shared
         .events
-        .note("layer", Some(program), format!("refused: {reason}"));
+        .note("layer", Some(&program), format!("refused: {reason}"));
     Reply::Refused {
         reasons: vec![reason],
     }
@@ -256,9 +355,13 @@ fn answer(request: Request, shared: &Shared) -> Reply {
                 shared.events.note("halt", None, "reset from the control socket");
                 Reply::Done
             }
-            Err(reason) => Reply::Refused {
-                reasons: vec![reason],
-            },
+            Err(reason) => {
+                let text = format!("reset from the control socket refused: {reason}");
+                shared.events.note("halt", None, text);
+                Reply::Refused {
+                    reasons: vec![reason],
+                }
+            }
         },
         Request::Hello { .. } | Request::Plug(_) | Request::Unplug | Request::Record { .. } => {
             Reply::Refused {

@@ -11,11 +11,28 @@ use ipc::control::Event;
 /// Events that are kept; older ones are in the log only.
 pub const EVENTS_MAX: usize = 1000;
 
+/// Longest text of an event: reasons may repeat what a caller sent.
+pub const TEXT_MAX: usize = 600;
+
+/// Most events a second about callers and layers, who could otherwise push everything else out by coming and
+/// going. What is more is counted.
+const CALLERS_EVENTS_MAX: u32 = 50;
+
 /// The newest events, numbered.
 #[derive(Debug)]
 pub struct Events {
     began: Time,
-    kept: Mutex<(u64, VecDeque<Event>)>,
+    kept: Mutex<Kept>,
+}
+
+#[derive(Debug, Default)]
+struct Kept {
+    last: u64,
+    events: VecDeque<Event>,
+    /// The second that is being counted, events of callers in it, and how many of them were left out.
+    second: u64,
+    count: u32,
+    left_out: u64,
 }
 
 impl Events {
@@ -27,29 +44,80 @@ impl Events {
         }
     }
 
-    /// Notes an event, and logs it.
+    /// Notes an event, and logs it. The text may hold what a stranger sent: it is cut to [`TEXT_MAX`] and its
+    /// control characters are replaced.
     pub fn note(&self, kind: &str, layer: Option<&str>, text: impl Into<String>) {
         let time_s = clock::monotonic().since(self.began).seconds();
-        let text = text.into();
-        eprintln!("[{time_s:9.3}] {text}");
         let mut kept = self.kept.lock().expect("nobody panics holding events");
-        kept.0 += 1;
-        let number = kept.0;
-        if kept.1.len() == EVENTS_MAX {
-            kept.1.pop_front();
+        let second = time_s as u64;
+        if kept.second != second {
+            (kept.second, kept.count) = (second, 0);
+            let left_out = std::mem::take(&mut kept.left_out);
+            if left_out > 0 {
+                let text = format!("{left_out} more events of layers and callers were left out");
+                kept.keep(time_s, kind, None, text);
+            }
         }
-        kept.1.push_back(Event {
-            number,
-            time_s,
-            kind: kind.into(),
-            layer: layer.map(Into::into),
-            text,
-        });
+        if matches!(kind, "layer" | "caller") {
+            kept.count += 1;
+            if kept.count > CALLERS_EVENTS_MAX {
+                kept.left_out += 1;
+                return;
+            }
+        }
+        kept.keep(time_s, kind, layer.map(plain), plain(&text.into()));
     }
 
     /// Events after the `after`-th, oldest first.
     pub fn after(&self, after: u64) -> Vec<Event> {
         let kept = self.kept.lock().expect("nobody panics holding events");
-        kept.1.iter().filter(|e| e.number > after).cloned().collect()
+        kept.events.iter().filter(|e| e.number > after).cloned().collect()
+    }
+}
+
+impl Kept {
+    fn keep(&mut self, time_s: f64, kind: &str, layer: Option<String>, text: String) {
+        eprintln!("[{time_s:9.3}] {text}");
+        self.last += 1;
+        if self.events.len() == EVENTS_MAX {
+            self.events.pop_front();
+        }
+        self.events.push_back(Event {
+            number: self.last,
+            time_s,
+            kind: kind.into(),
+            layer,
+            text,
+        });
+    }
+}
+
+/// `text` without what a terminal or a log would obey, and not too long.
+fn plain(text: &str) -> String {
+    let shown = text.chars().map(|c| if c.is_control() { '?' } else { c });
+    let mut plain: String = shown.take(TEXT_MAX).collect();
+    if plain.len() < text.len() && plain.chars().count() == TEXT_MAX {
+        plain.push('…');
+    }
+    plain
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn callers_cannot_flood_the_events_nor_write_to_the_terminal() {
+        let events = Events::new(clock::monotonic());
+        events.note("layer", None, format!("\x1b[2J{}\n", "x".repeat(10_000)));
+        let first = &events.after(0)[0];
+        assert!(!first.text.contains(char::is_control) && first.text.chars().count() <= TEXT_MAX + 1);
+        for _ in 0..10_000 {
+            events.note("layer", None, "refused");
+        }
+        events.note("halt", None, "the body is halted");
+        let kept = events.after(0);
+        assert!(kept.len() < 200, "{}", kept.len());
+        assert_eq!(kept.last().map(|e| e.kind.as_str()), Some("halt"));
     }
 }

@@ -18,7 +18,7 @@ use ipc::clock::{Span, Time};
 pub struct Causes(pub u64);
 
 /// Every cause, with the name that reports show.
-const NAMES: [(Causes, &str); 8] = [
+const NAMES: [(Causes, &str); CAUSES] = [
     (Causes::START, "start"),
     (Causes::REFLEX, "reflex"),
     (Causes::STALE, "stale command"),
@@ -27,7 +27,13 @@ const NAMES: [(Causes, &str); 8] = [
     (Causes::OVERRUN, "overrun"),
     (Causes::EMERGENCY, "emergency stop"),
     (Causes::SHUTDOWN, "shutdown"),
+    (Causes::BODY, "body lost"),
+    (Causes::WATCHDOG, "watchdog late"),
+    (Causes::MEMORY, "shared memory cut"),
 ];
+
+/// How many causes there are.
+pub const CAUSES: usize = 11;
 
 impl Causes {
     /// Nothing: the gate is open.
@@ -49,11 +55,21 @@ impl Causes {
     /// The daemon is leaving. Latched, and never reset.
     pub const SHUTDOWN: Causes = Causes(128);
 
+    /// The world behind the motor unit does not answer: its process is dead, frozen, or hangs.
+    pub const BODY: Causes = Causes(256);
+    /// The watchdog missed its beats, so that nobody looks after the others. Latched.
+    pub const WATCHDOG: Causes = Causes(512);
+    /// Somebody cut a shared-memory segment short under this process. Latched, and never reset.
+    pub const MEMORY: Causes = Causes(1024);
+
     /// Causes that stay until reset.
-    pub const LATCHED: Causes = Causes(16 | 32 | 64 | 128);
+    pub const LATCHED: Causes = Causes(16 | 32 | 64 | 128 | 512 | 1024);
+
+    /// Causes that no reset ends: the process has to go.
+    pub const FINAL: Causes = Causes(128 | 1024);
 
     /// Every cause with its name, in the order of its bit.
-    pub fn all() -> impl Iterator<Item = (Causes, &'static str)> {
+    pub fn named() -> impl Iterator<Item = (Causes, &'static str)> {
         NAMES.into_iter()
     }
 
@@ -72,6 +88,24 @@ impl Causes {
     /// Whether any of `other` is in this set.
     pub const fn has(self, other: Causes) -> bool {
         self.0 & other.0 != 0
+    }
+
+    /// Those of `other` that are in this set.
+    #[must_use]
+    pub const fn and(self, other: Causes) -> Causes {
+        Causes(self.0 & other.0)
+    }
+
+    /// Each cause of this set, with its place among all causes.
+    pub fn each(self) -> impl Iterator<Item = (usize, Causes)> {
+        let all = NAMES.iter().enumerate();
+        all.filter(move |(_, (cause, _))| self.has(*cause))
+            .map(|(i, (cause, _))| (i, *cause))
+    }
+
+    /// Every cause there is.
+    pub fn all() -> Causes {
+        Causes((1 << CAUSES) - 1)
     }
 
     /// The causes by name.
@@ -108,8 +142,8 @@ pub struct Seen {
     pub reflex: Option<Time>,
     /// Whether every vital layer has begun to beat.
     pub vital_began: bool,
-    /// Whether a vital layer is late.
-    pub vital_late: bool,
+    /// Causes that the motor unit and the watchdog see standing now: a late vital layer, a lost body.
+    pub standing: Causes,
     /// Causes that others latch: overrun, emergency stop, shutdown.
     pub latched: Causes,
     /// Whether a reset was asked for since the last beat.
@@ -163,10 +197,11 @@ impl Gate {
             self.latched = Causes::NONE;
         }
         self.latched = self.latched.with(seen.latched);
-        if self.began && seen.vital_late {
-            self.latched = self.latched.with(Causes::VITAL);
+        if self.began {
+            self.latched = self.latched.with(seen.standing.and(Causes::LATCHED));
         }
-        causes = causes.with(self.latched);
+        let transient = seen.standing.without(Causes::LATCHED);
+        causes = causes.with(self.latched).with(transient);
         (causes, Passage::for_causes(causes))
     }
 }
@@ -193,7 +228,7 @@ mod tests {
             unsound: false,
             reflex: None,
             vital_began: true,
-            vital_late: false,
+            standing: Causes::NONE,
             latched: Causes::NONE,
             reset: false,
         }
@@ -281,9 +316,32 @@ mod tests {
         let mut gate = gate();
         gate.decide(&seen(0));
         gate.decide(&Seen {
-            vital_late: true,
+            standing: Causes::VITAL,
             ..seen(1)
         });
         assert_eq!(gate.decide(&seen(2)), (Causes::VITAL, Passage::Closed));
     }
+
+    #[test]
+    fn a_lost_body_halts_until_it_is_back() {
+        let mut gate = gate();
+        gate.decide(&seen(0));
+        let lost = Seen {
+            standing: Causes::BODY,
+            ..seen(1)
+        };
+        assert_eq!(gate.decide(&lost), (Causes::BODY, Passage::Closed));
+        assert_eq!(gate.decide(&seen(2)), (Causes::NONE, Passage::Open));
+    }
+
+    #[test]
+    fn every_cause_has_one_name_and_one_place() {
+        let places: Vec<usize> = Causes::all().each().map(|(place, _)| place).collect();
+        assert_eq!(places, (0..CAUSES).collect::<Vec<_>>());
+        assert!(NAMES.iter().enumerate().all(|(i, (cause, _))| cause.0 == 1 << i));
+    }
 }
+
+#[cfg(test)]
+#[path = "gate_every_case.rs"]
+mod every_case;

@@ -9,18 +9,24 @@ use std::sync::Arc;
 use afsm::Kinds;
 use afsm::assemble::{FiledTap, Wires, assemble};
 use afsm::layer::{Hand, RunningLayer};
+use ipc::clock::Span;
 use ipc::wire::{Page, Reader, TapGauge};
-use ipc::wiring::creature::{Creature, Layer, PortName};
+use ipc::wiring::creature::{Creature, Layer, Overrun, PortName};
 use ipc::wiring::directory::output_ports;
 
-use crate::body::{self, Place, World, WorldEnd};
+use crate::body::handover::Giver;
+use crate::body::link::{SensorReaders, motor_end};
+use crate::body::{self, MotorEnd, Place, World, WorldEnd};
 use crate::executor::gauge::BeatGauge;
-use crate::motor::{HaltChannel, Motor};
+use crate::halt::HaltChannel;
+use crate::motor::Motor;
+use crate::watchdog::{Strict, Thaw, Vital, Watchdog};
 
 /// The kinds that this daemon was built with.
 pub fn kinds() -> Kinds {
     let bodies = body::BODIES.iter().map(|k| k.declaration);
     Kinds::default()
+        .with(stock::modules())
         .with(allen::MODULES.iter().copied())
         .with_bodies(bodies)
 }
@@ -48,22 +54,39 @@ pub struct Embodied {
     pub gauge: Arc<BeatGauge>,
 }
 
+/// The motor unit of a body in another process, ready to run.
+#[derive(Debug)]
+pub struct Apart {
+    /// The motor unit.
+    pub motor: Motor,
+    /// The motor unit's counters.
+    pub gauge: Arc<BeatGauge>,
+    /// Hands the other process's sensors to the motor unit.
+    pub giver: Giver<SensorReaders>,
+    /// The cell of the page in which the first command is.
+    pub first: usize,
+}
+
 /// A creature ready to run.
 pub struct Machine {
     /// As checked.
     pub creature: Creature,
-    /// The cells of all its wires, in the order of [`output_ports`].
+    /// The cells of all its wires, in the order of [`output_ports`]; then commands to a body apart.
     pub page: Arc<Page>,
     /// Its layers, lowest level first.
     pub stations: Vec<Station>,
     /// How to reach into each layer.
     pub hands: Vec<Hand>,
-    /// Its body, if it has one.
+    /// Its body, if it has one and it lives in this process.
     pub body: Option<Embodied>,
+    /// Its body, if it lives in another process.
+    pub apart: Option<Apart>,
     /// The taps of its file.
     pub taps: Vec<FiledTap>,
     /// The halt channel.
     pub halt: Arc<HaltChannel>,
+    /// Looks after all of it.
+    pub watchdog: Watchdog,
 }
 
 /// The wires of one process by name.
@@ -94,6 +117,13 @@ impl Wires for Net {
     }
 }
 
+/// How many cells the page of a creature has whose body lives in another process: its wires, then the
+/// commands to its body.
+pub fn cells_apart(creature: &Creature) -> usize {
+    let commands = creature.body.as_ref().map_or(0, |b| b.declaration.inputs.len());
+    output_ports(creature).count() + commands
+}
+
 impl Machine {
     /// Builds `creature` on the wires of `page`, which has one cell for each of its [`output_ports`].
     /// `start` is where the body starts, if a test wants a certain place.
@@ -101,10 +131,46 @@ impl Machine {
     /// # Panics
     /// When the creature was not checked against `kinds`.
     pub fn new(creature: Creature, kinds: &Kinds, page: Arc<Page>, start: Option<Place>) -> Machine {
+        let mut machine = Machine::without_body(creature, kinds, page);
+        let Some(spec) = machine.creature.body.clone() else {
+            return machine;
+        };
+        let kind = body::find(spec.declaration.name).expect("a checked body is of a known kind");
+        let (motor_end, link) = body::link(kind);
+        let (motor, gauge) = machine.embody(motor_end);
+        let world = (kind.build)(&spec.settings, machine.creature.seed, start);
+        machine.body = Some(Embodied {
+            motor,
+            world,
+            link,
+            gauge,
+        });
+        machine
+    }
+
+    /// The same with the body in another process; `page` has [`cells_apart`].
+    ///
+    /// # Panics
+    /// When the creature was not checked against `kinds`, or has no body.
+    pub fn apart(creature: Creature, kinds: &Kinds, page: Arc<Page>) -> Machine {
+        let mut machine = Machine::without_body(creature, kinds, page);
+        let body = machine.creature.body.as_ref().expect("the creature has a body");
+        let first = output_ports(&machine.creature).count();
+        let (motor_end, giver) = motor_end(body.declaration, &machine.page, first);
+        let (motor, gauge) = machine.embody(motor_end);
+        machine.apart = Some(Apart {
+            motor,
+            gauge,
+            giver,
+            first,
+        });
+        machine
+    }
+
+    fn without_body(creature: Creature, kinds: &Kinds, page: Arc<Page>) -> Machine {
         let net = Net::new(&creature, &page);
         let taps = filed_taps(&creature);
         let mut next = creature.body.as_ref().map_or(0, |b| b.declaration.outputs.len());
-        let sensors_end = next;
         let mut stations = Vec::new();
         let mut hands = Vec::new();
         for layer in &creature.layers {
@@ -122,33 +188,59 @@ impl Machine {
             hands.push(hand);
         }
         let halt = Arc::new(HaltChannel::default());
-        let gauges: Vec<_> = stations.iter().map(|s| s.gauge.clone()).collect();
-        let body = creature.body.as_ref().map(|spec| {
-            let kind = body::find(spec.declaration.name).expect("a checked body is of a known kind");
-            let (motor_end, link) = body::link(spec.declaration);
-            let sensor = |i: usize| {
-                page.writer(i, spec.declaration.outputs[i].kind)
-                    .expect("one writer")
-            };
-            let sensors = (0..sensors_end).map(sensor).collect();
-            let motor = Motor::new(&creature, motor_end, sensors, &net, &taps, &gauges, halt.clone());
-            let world = (kind.build)(&spec.settings, creature.seed, start);
-            Embodied {
-                motor,
-                world,
-                link,
-                gauge: Arc::default(),
-            }
-        });
+        let vital = stations.iter().filter(|s| s.spec.vital);
+        let strict = stations.iter().filter(|s| s.spec.overrun == Overrun::Halt);
+        let period = creature.body.as_ref().map_or(Span::ZERO, |b| b.period);
+        let watchdog = Watchdog {
+            vital: vital
+                .map(|s| Vital::new(&s.spec.name, s.gauge.clone(), s.spec.period))
+                .collect(),
+            strict: strict
+                .map(|s| Strict {
+                    gauge: s.gauge.clone(),
+                    period: s.spec.period,
+                })
+                .collect(),
+            commands: Vec::new(),
+            stale: creature.halt.stale,
+            channel: halt.clone(),
+            progress: Arc::default(),
+            thaw: Thaw::new(period),
+        };
         Machine {
             creature,
             page,
             stations,
             hands,
-            body,
+            body: None,
+            apart: None,
             taps,
             halt,
+            watchdog,
         }
+    }
+
+    /// The motor unit that drives `link`, and its counters; from now on the watchdog looks after both.
+    fn embody(&mut self, link: MotorEnd) -> (Motor, Arc<BeatGauge>) {
+        let creature = &self.creature;
+        let body = creature.body.as_ref().expect("the caller looked");
+        let kind = body::find(body.declaration.name).expect("a checked body is of a known kind");
+        let net = Net::new(creature, &self.page);
+        let sensors = body.declaration.outputs.iter().enumerate();
+        let sensor = |(i, port): (usize, &ipc::wiring::Port)| self.page.writer(i, port.kind);
+        let sensors = sensors.map(sensor).map(|w| w.expect("one writer")).collect();
+        let gauges: Vec<_> = self.stations.iter().map(|s| s.gauge.clone()).collect();
+        let gauge = Arc::new(BeatGauge::default());
+        let passed = |&i: &usize| (link.commands[i].reader(), body.declaration.inputs[i].limits());
+        self.watchdog.commands = kind.motion.iter().map(passed).collect();
+        // What is passed on is written once a beat; with less patience than two every other look would fail.
+        self.watchdog.stale = self.watchdog.stale.max(Span(2 * body.period.0));
+        self.watchdog
+            .vital
+            .push(Vital::new("motor", gauge.clone(), body.period));
+        let halt = self.halt.clone();
+        let motor = Motor::new(creature, link, sensors, &net, &self.taps, &gauges, halt);
+        (motor, gauge)
     }
 }
 

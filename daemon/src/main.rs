@@ -7,11 +7,15 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use clap::Parser;
+use daemon::admission::Admission;
 use daemon::control::{self, Control};
-use daemon::machine::{Machine, kinds};
+use daemon::executor::host;
+use daemon::feeder::Fed;
+use daemon::machine::{Machine, cells_apart, kinds};
 use daemon::metrics::{self, Endpoint, Metrics};
 use daemon::options::Options;
 use daemon::running::{self, Running};
+use daemon::segment;
 use daemon::view::View;
 use ipc::wire::iceoryx::Domain;
 use ipc::wiring::creature::Creature;
@@ -56,13 +60,18 @@ fn load(options: &Options) -> Result<(Creature, String), String> {
     let mut creature = check::creature(&source, &kinds()).map_err(|rejected| rejected.to_string())?;
     creature.seed = options.seed.unwrap_or(creature.seed);
     if let Some(name) = &options.name {
-        let sound = |c: char| c.is_ascii_alphanumeric() || c == '-' || c == '_';
-        if name.is_empty() || name.len() > 48 || !name.chars().all(sound) {
-            return Err(format!(
-                "--name {name:?}: expected 1 to 48 letters, digits, '-' or '_'"
-            ));
+        if !daemon::is_name(name) {
+            return Err(format!("--name {name:?}: {}", daemon::NAME_EXPECTED));
         }
         creature.name = name.clone();
+    }
+    if let Some(body) = &options.body {
+        if !daemon::is_name(body) {
+            return Err(format!("--body {body:?}: {}", daemon::NAME_EXPECTED));
+        }
+        if creature.body.is_none() {
+            return Err(format!("--body {body:?}: the creature has no [body]"));
+        }
     }
     if options.seconds.is_some_and(|s| !s.is_finite() || s <= 0.0) {
         return Err("--seconds: expected a number of seconds above zero".into());
@@ -76,18 +85,28 @@ fn run(options: &Options, creature: Creature, file: String) -> Result<(), String
     for signal in [signal_hook::consts::SIGTERM, signal_hook::consts::SIGINT] {
         signal_hook::flag::register(signal, leave.clone()).map_err(|e| format!("signal {signal}: {e}"))?;
     }
+    // Before any thread is made: none may inherit a real-time policy. What is refused here is said later.
+    let _ = host::be_ordinary();
     let name = creature.name.clone();
     control::claim(&name).map_err(|e| e.to_string())?;
+    segment::guard().map_err(|e| format!("a handler for SIGBUS: {e}"))?;
     let domain = Domain::join(&name).map_err(|e| e.to_string())?;
-    let owned = domain
-        .own(&name, output_ports(&creature).count())
-        .map_err(|e| e.to_string())?;
-    let machine = Machine::new(creature, &kinds(), owned.page().clone(), None);
-    let settings = options.recorder(file);
-    let running = running::start(&name, machine, owned, domain, &settings)
+    let cells = match options.body {
+        Some(_) => cells_apart(&creature),
+        None => output_ports(&creature).count(),
+    };
+    let owned = domain.own(&name, cells).map_err(|e| e.to_string())?;
+    let admission = Admission::of(&creature.outsiders)?;
+    let fed = Fed::open(creature.halt.watchdog_device.as_deref()).map_err(|e| e.to_string())?;
+    let machine = match options.body {
+        Some(_) => Machine::apart(creature, &kinds(), owned.page().clone()),
+        None => Machine::new(creature, &kinds(), owned.page().clone(), None),
+    };
+    let (body, settings) = (options.body.as_deref(), options.recorder(file));
+    let running = running::start(&name, machine, owned, domain, &settings, body, fed)
         .map_err(|e| format!("starting threads and recordings: {e}"))?;
-    let control =
-        Control::open(&name, running.shared.clone()).map_err(|e| format!("the control socket: {e}"));
+    let control = Control::open(&name, running.shared.clone(), admission)
+        .map_err(|e| format!("the control socket: {e}"));
     let page = serve_page(options, &running);
     let metrics = serve_metrics(options, &running);
     let result = control.and_then(|control| Ok((control, page?, metrics?)));
@@ -99,6 +118,9 @@ fn run(options: &Options, creature: Creature, file: String) -> Result<(), String
             println!("metrics: http://{address}/metrics");
         }
         wait(options, &leave);
+        if segment::cut() > 0 {
+            running.leave_cut();
+        }
         // Nobody is answered any more while the body comes to a halt.
         drop((control, page, metrics));
     });
@@ -154,7 +176,8 @@ fn introduce(running: &Running, page: Option<&page::Server>) {
 fn wait(options: &Options, leave: &AtomicBool) {
     let began = Instant::now();
     let limit = options.seconds.map(Duration::from_secs_f64);
-    while !leave.load(Ordering::Relaxed) && limit.is_none_or(|limit| began.elapsed() < limit) {
+    let goes_on = || !leave.load(Ordering::Relaxed) && segment::cut() == 0;
+    while goes_on() && limit.is_none_or(|limit| began.elapsed() < limit) {
         std::thread::sleep(Duration::from_millis(20));
     }
 }

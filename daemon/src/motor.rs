@@ -8,95 +8,22 @@
 //! Must never allocate, lock or wait in a beat; nothing a tap does reaches the gate's own inputs.
 
 use std::sync::Arc;
-use std::sync::atomic::{AtomicU64, Ordering};
 
 use afsm::assemble::{FiledTap, Wires, join};
 use afsm::layer::trace_registers;
 use afsm::trace::Tracer;
 use ipc::clock::{Span, Time};
 use ipc::message::{WORDS_MAX, Words};
-use ipc::wire::{Reader, Register, Writer};
+use ipc::wire::{AHEAD_MAX, Reader, Register, Writer};
+use ipc::wiring::Declaration;
 use ipc::wiring::creature::{BODY, Creature, How, PortName};
 
 use crate::body::{self, BodyKind, MotorEnd};
 use crate::executor::gauge::BeatGauge;
 use crate::gate::{Causes, Gate, Passage, Seen};
-
-/// The halt channel: how others close the gate, and how all can see whether it is closed.
-#[derive(Debug)]
-pub struct HaltChannel {
-    /// Causes that stand now, latched by others; bits of [`Causes`].
-    standing: AtomicU64,
-    /// Number of resets asked for.
-    resets: AtomicU64,
-    /// What the gate decided last; bits of [`Causes`].
-    decided: AtomicU64,
-    /// When that last changed.
-    since: AtomicU64,
-    /// How often each cause came up, in the order of its bit.
-    counts: [AtomicU64; CAUSES],
-}
-
-/// How many causes there are.
-const CAUSES: usize = 8;
-
-impl Default for HaltChannel {
-    /// Nothing is latched; the gate has not opened yet.
-    fn default() -> Self {
-        HaltChannel {
-            standing: AtomicU64::new(0),
-            resets: AtomicU64::new(0),
-            decided: AtomicU64::new(Causes::START.0),
-            since: AtomicU64::new(0),
-            counts: std::array::from_fn(|_| AtomicU64::new(0)),
-        }
-    }
-}
-
-impl HaltChannel {
-    /// Closes the gate for `cause`.
-    pub fn halt(&self, cause: Causes) {
-        // Relaxed: the bit is the message.
-        self.standing.fetch_or(cause.0, Ordering::Relaxed);
-    }
-
-    /// Ends what is latched.
-    ///
-    /// # Errors
-    /// When the daemon is leaving.
-    pub fn reset(&self) -> Result<(), String> {
-        let standing = Causes(self.standing.load(Ordering::Relaxed));
-        if standing.has(Causes::SHUTDOWN) {
-            return Err("the daemon is shutting down; start it again to go on".into());
-        }
-        self.standing.fetch_and(!standing.0, Ordering::Relaxed);
-        self.resets.fetch_add(1, Ordering::Relaxed);
-        Ok(())
-    }
-
-    /// How often each cause came up, by its name.
-    pub fn counts(&self) -> impl Iterator<Item = (&'static str, u64)> {
-        Causes::all()
-            .zip(&self.counts)
-            .map(|((_, name), count)| (name, count.load(Ordering::Relaxed)))
-    }
-
-    /// The causes for which the gate is closed, and since when.
-    pub fn decided(&self) -> (Causes, Time) {
-        (
-            Causes(self.decided.load(Ordering::Relaxed)),
-            Time(self.since.load(Ordering::Relaxed)),
-        )
-    }
-}
-
-/// A vital layer as the gate watches it.
-#[derive(Debug)]
-struct Vital {
-    gauge: Arc<BeatGauge>,
-    /// Later than this after its last beat it is late.
-    late: Span,
-}
+use crate::halt::HaltChannel;
+use crate::segment;
+use crate::watchdog::{Thaw, Vital};
 
 /// The motor unit.
 #[derive(Debug)]
@@ -104,33 +31,44 @@ pub struct Motor {
     kind: &'static BodyKind,
     registers: Vec<Register>,
     faults: u64,
+    link: MotorEnd,
     sensors: Vec<Sensor>,
-    commands: Vec<Writer>,
     passed: Vec<Words>,
     reflexes: Vec<Reader>,
-    vital: Vec<Vital>,
+    vital: Vec<Arc<BeatGauge>>,
+    watchdog: Vital,
+    thaw: Thaw,
     gate: Gate,
     channel: Arc<HaltChannel>,
     resets: u64,
     period: Span,
-    causes: Causes,
     tracer: Option<Tracer>,
 }
 
-/// A sensor: from the link to its wire.
+/// A sensor's wire.
 #[derive(Debug)]
 struct Sensor {
-    link: Reader,
-    seen: u64,
     wire: Writer,
+    /// Number of the newest message of the link that was seen.
+    seen: u64,
+    /// How many messages were written.
     written: u64,
 }
 
-/// Beats that a vital layer may miss before the body halts: one is a hiccup of the host, two are a fault.
-const VITAL_BEATS_MAX: u64 = 2;
+impl Sensor {
+    fn new(wire: Writer) -> Sensor {
+        Sensor {
+            wire,
+            seen: 0,
+            written: 0,
+        }
+    }
 
-/// Least lateness that counts, whatever the period: gaps of 10 to 30 ms are a virtual host's own.
-const VITAL_LATE_MIN: Span = Span::millis(50);
+    fn write(&mut self, now: Time, words: &Words) {
+        self.wire.write(now, words);
+        self.written += 1;
+    }
+}
 
 impl Motor {
     /// The motor unit of a checked creature with a body. `sensors` are the wires of the body's outputs.
@@ -168,29 +106,17 @@ impl Motor {
             join(taps, How::Suppress, &name, wires, |end| register.suppress(end));
             registers.push(register);
         }
-        let pairs = link
-            .sensors
-            .into_iter()
-            .zip(sensors)
-            .map(|(link, wire)| Sensor {
-                link,
-                seen: 0,
-                wire,
-                written: 0,
-            })
-            .collect();
         let vital = creature
             .layers
             .iter()
             .zip(gauges)
             .filter(|(layer, _)| layer.vital);
-        let late = |period: Span| Span((period.0 * (VITAL_BEATS_MAX + 1)).max(VITAL_LATE_MIN.0));
         Motor {
             kind,
             registers,
             faults: 0,
-            sensors: pairs,
-            commands: link.commands,
+            link,
+            sensors: sensors.into_iter().map(Sensor::new).collect(),
             passed: vec![[0.0; WORDS_MAX]; inputs.len()],
             reflexes: creature
                 .halt
@@ -198,17 +124,13 @@ impl Motor {
                 .iter()
                 .map(|r| wires.reader(r).expect("checked"))
                 .collect(),
-            vital: vital
-                .map(|(l, gauge)| Vital {
-                    gauge: gauge.clone(),
-                    late: late(l.period),
-                })
-                .collect(),
+            vital: vital.map(|(_, gauge)| gauge.clone()).collect(),
+            watchdog: Vital::new("watchdog", channel.watchdog.clone(), body.period),
+            thaw: Thaw::new(body.period),
             gate: Gate::new(creature.halt.stale, creature.halt.hold),
             channel,
             resets: 0,
             period: body.period,
-            causes: Causes::NONE,
             tracer: None,
         }
     }
@@ -233,6 +155,10 @@ impl Motor {
         if let Some(tracer) = &mut self.tracer {
             tracer.begin(now);
         }
+        if self.link.taker.take(&mut self.link.readers) {
+            // Another world: what it says counts from the beginning.
+            self.sensors.iter_mut().for_each(|sensor| sensor.seen = 0);
+        }
         for register in &mut self.registers {
             // Taps of the creature file never leave, so there is none to give back.
             register.gather(now, std::mem::forget);
@@ -242,11 +168,33 @@ impl Motor {
         }
     }
 
+    /// Looks at every command between two beats; see [`Register::look`].
+    pub fn look(&mut self, now: Time) {
+        for register in &mut self.registers {
+            register.look(now, std::mem::forget);
+        }
+    }
+
+    /// Writes a message on the wire of the `index`-th sensor at once, as though the world had sent it.
+    pub fn put(&mut self, index: usize, now: Time, words: &Words) {
+        self.sensors[index].write(now, words);
+    }
+
+    /// The register behind the `index`-th command; `None` for the reset line, which a body has not.
+    pub fn register(&self, index: usize) -> Option<&Register> {
+        self.registers.get(index)
+    }
+
+    /// What the body looks like from outside.
+    pub fn declaration(&self) -> &'static Declaration {
+        self.kind.declaration
+    }
+
     /// Second half of a beat: decides, moves the body, passes on what the sensors say.
     pub fn act(&mut self, now: Time) {
-        let seen = self.look(now);
+        let seen = self.see(now);
         let (causes, passage) = self.gate.decide(&seen);
-        self.show(causes, now);
+        self.channel.show(causes, now);
         if let Some(tracer) = &mut self.tracer {
             tracer.causes(causes.0);
         }
@@ -259,18 +207,18 @@ impl Motor {
                 _ => continue,
             };
             self.passed[index] = words;
-            self.commands[index].write(now, &words);
+            self.link.commands[index].write(now, &words);
             if let Some(tracer) = &mut self.tracer {
                 tracer.passed(index, &words[..self.kind.declaration.inputs[index].kind.words()]);
             }
         }
-        for (slot, sensor) in self.sensors.iter_mut().enumerate() {
-            let Some(reading) = sensor.link.newer_than(sensor.seen) else {
+        let readers = self.link.readers.sensors.iter();
+        for (slot, (reader, sensor)) in readers.zip(&mut self.sensors).enumerate() {
+            let Some(reading) = reader.newer_than(sensor.seen) else {
                 continue;
             };
             sensor.seen = reading.number;
-            sensor.wire.write(now, &reading.words);
-            sensor.written += 1;
+            sensor.write(now, &reading.words);
             if let Some(tracer) = &mut self.tracer {
                 tracer.wrote(slot, sensor.written, &reading.words[..sensor.wire.kind().words()]);
             }
@@ -285,7 +233,7 @@ impl Motor {
         self.passed[index][0]
     }
 
-    fn look(&mut self, now: Time) -> Seen {
+    fn see(&mut self, now: Time) -> Seen {
         let stamps = self
             .kind
             .motion
@@ -300,14 +248,9 @@ impl Motor {
             .sum();
         let unsound = faults != self.faults;
         self.faults = faults;
-        let began = self.vital.iter().all(|v| v.gauge.counts().beats > 0);
-        let late = self
-            .vital
-            .iter()
-            .any(|v| now.since(v.gauge.counts().last) > v.late);
-        let resets = self.channel.resets.load(Ordering::Relaxed);
-        let reset = resets != self.resets;
-        self.resets = resets;
+        let began = |gauge: &BeatGauge| gauge.counts().beats > 0;
+        let vital_began = self.vital.iter().all(|v| began(v)) && began(&self.watchdog.gauge);
+        let standing = self.standing(now);
         Seen {
             now,
             oldest_command,
@@ -318,27 +261,30 @@ impl Motor {
                 .filter_map(|r| r.read())
                 .map(|r| r.stamp.min(now))
                 .max(),
-            vital_began: began,
-            vital_late: late,
-            latched: Causes(self.channel.standing.load(Ordering::Relaxed)),
-            reset,
+            vital_began,
+            standing,
+            latched: self.channel.latched(),
+            reset: self.channel.reset_asked(&mut self.resets),
         }
     }
 
-    fn show(&mut self, causes: Causes, now: Time) {
-        let channel = &self.channel;
-        if self.causes != causes || channel.since.load(Ordering::Relaxed) == 0 {
-            let new = causes.without(self.causes);
-            for ((cause, _), count) in Causes::all().zip(&channel.counts) {
-                if new.has(cause) {
-                    // Only this thread counts; the numbers are to look at.
-                    count.store(count.load(Ordering::Relaxed) + 1, Ordering::Relaxed);
-                }
-            }
-            self.causes = causes;
-            channel.decided.store(causes.0, Ordering::Relaxed);
-            channel.since.store(now.0.max(1), Ordering::Relaxed);
+    /// Causes that stand now: what the watchdog sees, and what can be seen from here alone.
+    fn standing(&mut self, now: Time) -> Causes {
+        let mut standing = self.channel.watched();
+        let thawed = self.thaw.at(now);
+        if self.watchdog.is_late(now, thawed) {
+            standing = standing.with(Causes::WATCHDOG);
         }
+        // A pulse from the future is no pulse: its writer's clock, or the cell, is wrong.
+        let pulse = self.link.readers.pulse.read().map(|r| r.stamp);
+        let lives = |stamp: Time| stamp <= now + AHEAD_MAX && now.since(stamp) <= self.kind.stale;
+        if !pulse.is_some_and(lives) {
+            standing = standing.with(Causes::BODY);
+        }
+        if segment::cut() > 0 {
+            standing = standing.with(Causes::MEMORY);
+        }
+        standing
     }
 }
 

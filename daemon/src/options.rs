@@ -18,6 +18,7 @@ use crate::recorder::{Settings, flight};
     subsumed --creature mine.toml           a creature of your own\n  \
     subsumed --headless --seconds 60        one minute, nothing to look at\n  \
     subsumed --name jerry --page-port 0     a second instance beside the first\n  \
+    subsumed --body hall                    the body lives in another process: `subsumed-body --name hall`\n  \
     subsumed --record run.mcap              everything that happens, from the first beat on\n  \
     subsumed --metrics-port 9464            numbers for Prometheus\n\n\
     Ctrl-C halts the body, then leaves.\n\
@@ -30,6 +31,9 @@ pub struct Options {
     /// Name of this instance; the creature's own if not given
     #[arg(long)]
     pub name: Option<String>,
+    /// Name of the process that runs the body (see `subsumed-body`); without it, this one does
+    #[arg(long, value_name = "NAME")]
+    pub body: Option<String>,
     /// Port of the live page on 127.0.0.1; 0 for any that is free
     #[arg(long, default_value_t = 4686, value_name = "N")]
     pub page_port: u16,

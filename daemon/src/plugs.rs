@@ -3,19 +3,35 @@
 //!
 //! Must never wait for a layer process, nor let anything it says reach a real-time thread unchecked.
 
-use std::collections::HashMap;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};
 
 use afsm::layer::{Command, Hand};
-use ipc::clock::Span;
+use ipc::clock::{self, Span, Time};
 use ipc::control::{Plug, PlugTap};
-use ipc::message::Kind;
 use ipc::wire::iceoryx::Domain;
-use ipc::wire::{Page, Reader, TapEnd, TapGauge};
-use ipc::wiring::creature::{Creature, How};
+use ipc::wire::{Page, Reader, TapGauge};
+use ipc::wiring::creature::Creature;
 use ipc::wiring::directory::Directory;
 
 use crate::events::Events;
+use crate::flow::Flow;
+use crate::policy::Policy;
+
+/// How long a layer that broke the policy is kept out.
+pub const BARRED: Span = Span::secs(10);
+
+/// Most layers kept out at once: as many as may be attached.
+const BARRED_MAX: usize = 32;
+
+/// An attached layer, as its connection knows it.
+#[derive(Debug)]
+pub struct Joined {
+    /// Its number.
+    pub number: u32,
+    /// Set when it is let go against its will.
+    pub dismissed: Arc<AtomicBool>,
+}
 
 /// A tap that an attached layer holds.
 #[derive(Clone, Debug)]
@@ -39,17 +55,14 @@ pub struct Attached {
     pub page: Arc<Page>,
     /// Its taps.
     pub taps: Vec<AttachedTap>,
+    /// Set when it is let go against its will: its connection is closed then.
+    pub dismissed: Arc<AtomicBool>,
+    flows: Vec<Flow>,
 }
-
-/// Where a port of the creature is found: which layer, and which register or outlet of it.
-type Places = HashMap<String, (usize, usize)>;
 
 /// The layers attached, and how to reach into those of the creature.
 pub struct Plugs {
-    creature: Creature,
-    directory: Directory,
-    inputs: Places,
-    outputs: Places,
+    policy: Policy,
     state: Mutex<State>,
     events: Arc<Events>,
 }
@@ -62,6 +75,8 @@ struct State {
     version: u64,
     /// Number of the newest tap, those of the creature file included.
     tap: u16,
+    /// Layers that broke the policy, by name, and until when they are not let in again.
+    barred: Vec<(String, Time)>,
 }
 
 impl State {
@@ -75,22 +90,6 @@ impl State {
 impl Plugs {
     /// Nobody attached yet.
     pub fn new(creature: Creature, directory: Directory, hands: Vec<Hand>, events: Arc<Events>) -> Plugs {
-        let (mut inputs, mut outputs) = (Places::new(), Places::new());
-        for (station, layer) in creature.layers.iter().enumerate() {
-            let (mut input, mut output) = (0, 0);
-            for module in &layer.modules {
-                for port in module.declaration.inputs {
-                    inputs.insert(format!("{}.{}", module.name, port.name), (station, input));
-                    input += 1;
-                }
-                inputs.insert(format!("{}.reset", module.name), (station, input));
-                input += 1;
-                for port in module.declaration.outputs {
-                    outputs.insert(format!("{}.{}", module.name, port.name), (station, output));
-                    output += 1;
-                }
-            }
-        }
         let filed: usize = creature.layers.iter().map(|l| l.taps.len()).sum();
         let state = Mutex::new(State {
             hands,
@@ -99,10 +98,7 @@ impl Plugs {
             ..State::default()
         });
         Plugs {
-            creature,
-            directory,
-            inputs,
-            outputs,
+            policy: Policy::new(creature, directory),
             state,
             events,
         }
@@ -110,12 +106,8 @@ impl Plugs {
 
     /// What the creature shows to newcomers, attached layers included.
     pub fn directory(&self) -> Directory {
-        let mut directory = self.directory.clone();
-        for attached in self.attached() {
-            directory.layers.push(attached.plug.layer.clone());
-            directory.outputs.extend(attached.plug.outputs.iter().cloned());
-        }
-        directory
+        let attached = self.attached();
+        self.policy.directory_with(attached.iter().map(|a| &a.plug))
     }
 
     /// The layers attached now.
@@ -126,6 +118,11 @@ impl Plugs {
     /// Changes whenever a layer comes or goes.
     pub fn version(&self) -> u64 {
         self.lock().version
+    }
+
+    /// What the page draws has changed by itself: another floor.
+    pub fn picture_changed(&self) {
+        self.lock().version += 1;
     }
 
     /// Drops what the layers have let go of. Call it now and then.
@@ -143,7 +140,7 @@ impl Plugs {
     ///
     /// # Errors
     /// Every reason why not.
-    pub fn attach(&self, plug: Plug, domain: &Domain) -> Result<u32, Vec<String>> {
+    pub fn attach(&self, plug: Plug, domain: &Domain) -> Result<Joined, Vec<String>> {
         let result = self.try_attach(&plug, domain);
         let (layer, pid) = (plug.layer.clone(), plug.pid);
         match &result {
@@ -160,8 +157,18 @@ impl Plugs {
         result
     }
 
-    fn try_attach(&self, plug: &Plug, domain: &Domain) -> Result<u32, Vec<String>> {
-        let reasons = self.reasons_against(plug);
+    fn try_attach(&self, plug: &Plug, domain: &Domain) -> Result<Joined, Vec<String>> {
+        if self.lock().barred.iter().any(|(name, _)| *name == plug.layer) {
+            let reason = format!(
+                "layer {:?} broke the policy; it may come back {BARRED} after",
+                plug.layer
+            );
+            return Err(vec![reason]);
+        }
+        let attached = self.attached();
+        let reasons = self
+            .policy
+            .reasons_against(plug, attached.iter().map(|a| &a.plug));
         if !reasons.is_empty() {
             return Err(reasons);
         }
@@ -175,6 +182,9 @@ impl Plugs {
             )]);
         }
         let mut state = self.lock();
+        if state.attached.len() >= self.policy.outsiders().layers_max {
+            return Err(vec!["the most layers allowed are attached".into()]);
+        }
         if state.attached.iter().any(|a| a.plug.layer == plug.layer) {
             return Err(vec![format!("a layer {:?} is attached already", plug.layer)]);
         }
@@ -184,14 +194,18 @@ impl Plugs {
         for tap in &plug.taps {
             taps.push(self.join(&mut state, number, plug, tap, &page)?);
         }
+        let dismissed = Arc::new(AtomicBool::new(false));
+        let now = clock::monotonic();
         state.attached.push(Attached {
             number,
             plug: plug.clone(),
             page,
+            flows: taps.iter().map(|t| Flow::new(&t.reader, now)).collect(),
             taps,
+            dismissed: dismissed.clone(),
         });
         state.version += 1;
-        Ok(number)
+        Ok(Joined { number, dismissed })
     }
 
     fn join(
@@ -202,26 +216,10 @@ impl Plugs {
         tap: &PlugTap,
         page: &Arc<Page>,
     ) -> Result<AttachedTap, Vec<String>> {
-        let index = plug
-            .outputs
-            .iter()
-            .position(|o| o.name == tap.from)
-            .expect("checked");
-        let reader = page.reader(index, plug.outputs[index].kind).expect("checked");
         let gauge = Arc::new(TapGauge::numbered(state.tap_number()));
-        let end = TapEnd {
-            reader: reader.clone(),
-            time_constant: tap.time_constant,
-            level: plug.level,
-            plug: number,
-            gauge: gauge.clone(),
-        };
-        let (places, command): (_, fn(usize, TapEnd) -> Command) = match tap.how {
-            How::Suppress => (&self.inputs, Command::Suppress),
-            How::Inhibit => (&self.outputs, Command::Inhibit),
-        };
-        let (station, port) = places[&tap.to];
-        if state.hands[station].commands.push(command(port, end)).is_err() {
+        let joined = self.policy.join(number, plug, tap, page, gauge);
+        let (station, command) = (joined.station, joined.command);
+        if state.hands[station].commands.push(command).is_err() {
             for hand in &mut state.hands {
                 let _ = hand.commands.push(Command::Release(number));
             }
@@ -232,9 +230,47 @@ impl Plugs {
         }
         Ok(AttachedTap {
             tap: tap.clone(),
-            gauge,
-            reader,
+            gauge: joined.gauge,
+            reader: joined.reader,
         })
+    }
+
+    /// Looks whether the attached layers keep to the policy: one that floods a tap is let go and not let in again
+    /// for a while; one whose messages are none is named. Call it ten times a second.
+    pub fn police(&self, now: Time) {
+        let mut breaches = Vec::new();
+        let most = self.policy.outsiders().messages_max;
+        {
+            let state = &mut *self.lock();
+            state.barred.retain(|(_, until)| *until > now);
+            for attached in &mut state.attached {
+                for (tap, flow) in attached.taps.iter().zip(&mut attached.flows) {
+                    let layer = &attached.plug.layer;
+                    if let Some(text) = flow.garbage(&tap.gauge, now) {
+                        let text = format!("policy breach: layer {layer}: {text} on {}", tap.tap.from);
+                        breaches.push((None, layer.clone(), text));
+                    }
+                    if let Some(text) = flow.flood(tap.reader.number(), most, now) {
+                        let text = format!("policy breach: layer {layer} floods {}: {text}", tap.tap.from);
+                        attached.dismissed.store(true, Ordering::Relaxed);
+                        breaches.push((Some(attached.number), layer.clone(), text));
+                        break;
+                    }
+                }
+            }
+            let flooding = breaches.iter().filter(|(number, ..)| number.is_some());
+            for (_, layer, _) in flooding {
+                if state.barred.len() < BARRED_MAX {
+                    state.barred.push((layer.clone(), now + BARRED));
+                }
+            }
+        }
+        for (number, layer, text) in breaches {
+            self.events.note("policy", Some(&layer), text);
+            if let Some(number) = number {
+                self.detach(number, "was let go");
+            }
+        }
     }
 
     /// Lets an attached layer go, for the reason given.
@@ -260,96 +296,5 @@ impl Plugs {
             .unwrap_or(Span::ZERO);
         let text = format!("layer {layer} (pid {pid}) {why}; its taps run out within {longest}");
         self.events.note("layer", Some(layer), text);
-    }
-
-    fn reasons_against(&self, plug: &Plug) -> Vec<String> {
-        let mut reasons = Vec::new();
-        let outsiders = &self.creature.outsiders;
-        let mut against = |wrong: bool, reason: String| {
-            if wrong {
-                reasons.push(reason);
-            }
-        };
-        let attached = self.attached();
-        let taken = self.directory.layers.contains(&plug.layer);
-        against(
-            taken || attached.iter().any(|a| a.plug.layer == plug.layer),
-            format!("there is a layer {:?} already", plug.layer),
-        );
-        against(
-            attached.len() >= outsiders.layers_max,
-            format!("{} layers are attached, the most allowed", attached.len()),
-        );
-        against(
-            plug.level > outsiders.level_max,
-            format!(
-                "level {} is above {}, the highest allowed",
-                plug.level, outsiders.level_max
-            ),
-        );
-        against(
-            plug.outputs.len() > ipc::wire::WIRES_MAX,
-            "too many outputs".into(),
-        );
-        against(
-            plug.layer.len() > 48 || plug.layer.is_empty(),
-            "the layer's name is not one".into(),
-        );
-        for tap in &plug.taps {
-            self.reasons_against_tap(plug, tap, &mut against);
-        }
-        reasons
-    }
-
-    fn reasons_against_tap(&self, plug: &Plug, tap: &PlugTap, against: &mut impl FnMut(bool, String)) {
-        let to = &tap.to;
-        let ports = if tap.how == How::Suppress {
-            &self.directory.inputs
-        } else {
-            &self.directory.outputs
-        };
-        let target = ports.iter().find(|p| p.name == *to);
-        let source = plug.outputs.iter().find(|o| o.name == tap.from);
-        let places = if tap.how == How::Suppress {
-            &self.inputs
-        } else {
-            &self.outputs
-        };
-        against(
-            target.is_none() || !places.contains_key(to),
-            format!("there is no such port {to} to tap"),
-        );
-        against(
-            source.is_none(),
-            format!("{} is not among the layer's outputs", tap.from),
-        );
-        against(
-            !self.directory.open_taps.contains(to),
-            format!("the creature does not open {to} to taps from outside"),
-        );
-        against(
-            self.directory.reflexes.contains(to),
-            format!("{to} is part of the halt channel"),
-        );
-        let longest = self.creature.outsiders.time_constant_max;
-        against(
-            tap.time_constant > longest,
-            format!("the time constant {} is above {longest}", tap.time_constant),
-        );
-        against(
-            tap.time_constant == Span::ZERO,
-            "a tap needs a time constant".into(),
-        );
-        let Some(target) = target else { return };
-        against(
-            target.level.is_none_or(|l| l >= plug.level),
-            format!("{to} is not of a level below {}", plug.level),
-        );
-        let kinds: (Option<Kind>, Kind) = (source.map(|s| s.kind), target.kind);
-        let differ = tap.how == How::Suppress && kinds.0.is_some_and(|kind| kind != kinds.1);
-        against(
-            differ,
-            format!("{} does not carry what {to} takes, {}", tap.from, kinds.1),
-        );
     }
 }

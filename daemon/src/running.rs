@@ -6,35 +6,31 @@
 //! ```
 //! Must never leave an actuator moving: however it ends, the body is halted first.
 
-use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};
 use std::thread::JoinHandle;
 use std::time::Duration;
 
-use afsm::layer::RunningLayer;
-use afsm::trace::{self, Trace, Tracer};
-use ipc::clock::{self, Span, Time};
+use ipc::clock::{self, Span};
 use ipc::wire::iceoryx::{Domain, OwnedPage};
-use ipc::wiring::creature::{Creature, Overrun};
+use ipc::wiring::creature::Creature;
 use ipc::wiring::directory::{Directory, output_ports};
 use recording::Manifest;
 use serde_json::{Value, json};
 
-use crate::alloc;
-use crate::body::{World, WorldEnd};
+use crate::body::remote::{self, Remote};
+use crate::body::{self, World, WorldEnd};
 use crate::events::Events;
-use crate::executor::{self, Beating, Beats, Plan, host, host::Refusal};
+use crate::executor::{Beating, Refusal, host, plan};
+use crate::feeder::{self, Fed};
 use crate::gate::Causes;
-use crate::machine::{Embodied, Machine};
-use crate::motor::{HaltChannel, Motor};
+use crate::halt::HaltChannel;
+use crate::machine::{Apart, Embodied, Machine};
 use crate::plugs::Plugs;
-use crate::recorder::{self, Feed, Recorder};
-use crate::status::{self, Rates, Record, Watched, WatchedTap};
-
-/// Priority of the motor unit; layers come below it, the shorter the period the higher. Above what ordinary
-/// programs choose, below the kernel's own threads at 99.
-const PRIORITY_MAX: u8 = 80;
+use crate::recorder::{self, Recorder};
+use crate::status::{Rates, Record, Watched, WatchedTap};
+use crate::threads::{Crew, Start};
+use crate::watcher::Watcher;
 
 /// What the threads of the daemon share, none of them real-time.
 pub struct Shared {
@@ -50,8 +46,8 @@ pub struct Shared {
     pub plugs: Plugs,
     /// Shared memory.
     pub domain: Domain,
-    /// What of the world does not change.
-    pub floor: Value,
+    /// What of the world does not change; known once the body is there.
+    floor: Mutex<Value>,
     /// What happens, for those who record it.
     pub recorder: Recorder,
     status: Mutex<Arc<Value>>,
@@ -67,7 +63,29 @@ impl Shared {
             .clone();
         Value::clone(&status)
     }
+
+    /// Another status.
+    pub(crate) fn set_status(&self, status: Value) {
+        *self.status.lock().expect("nobody panics holding the status") = Arc::new(status);
+    }
+
+    /// What of the world does not change.
+    pub fn floor(&self) -> Value {
+        self.floor
+            .lock()
+            .expect("nobody panics holding the floor")
+            .clone()
+    }
+
+    /// Another body was found.
+    pub(crate) fn set_floor(&self, floor: Value) {
+        *self.floor.lock().expect("nobody panics holding the floor") = floor;
+        self.plugs.picture_changed();
+    }
 }
+
+/// Time for every thread to be ready before the first beat is due.
+const START_WAIT: Span = Span::millis(50);
 
 /// A running daemon.
 pub struct Running {
@@ -75,31 +93,26 @@ pub struct Running {
     pub shared: Arc<Shared>,
     /// What the host refused; empty in real time.
     pub refusals: Vec<Refusal>,
+    /// What was measured of every layer and the motor unit.
+    pub records: Arc<Mutex<Vec<Record>>>,
     beating: Vec<Beating>,
     helpers: Vec<JoinHandle<()>>,
     stop: Arc<AtomicBool>,
     leave: Arc<AtomicBool>,
 }
 
-struct LayerBeats(RunningLayer);
-
-impl Beats for LayerBeats {
-    fn beat(&mut self, now: Time) {
-        self.0.step(now);
-        self.0.commit(clock::monotonic());
-    }
+/// Why a creature that does not run in best effort does not run here.
+fn refused(refusals: &[Refusal]) -> std::io::Error {
+    let lines: Vec<String> = refusals.iter().map(Refusal::to_string).collect();
+    let text = format!(
+        "the host does not grant real time and [executor] best_effort is \"refuse\":\n  {}",
+        lines.join("\n  ")
+    );
+    std::io::Error::new(std::io::ErrorKind::PermissionDenied, text)
 }
 
-struct MotorBeats(Motor);
-
-impl Beats for MotorBeats {
-    fn beat(&mut self, now: Time) {
-        self.0.gather(now);
-        self.0.act(clock::monotonic());
-    }
-}
-
-/// Starts `machine`, whose wires are in `owned`, as `name`, and records it as `settings` say.
+/// Starts `machine`, whose wires are in `owned`, as `name`, and records it as `settings` say. `body` is the name of
+/// the process that runs its body, if one does; `fed` is who is fed while all is well.
 ///
 /// # Errors
 /// When the host refuses a thread, or the file to record into.
@@ -109,6 +122,8 @@ pub fn start(
     owned: OwnedPage,
     domain: Domain,
     settings: &recorder::Settings,
+    body: Option<&str>,
+    fed: Fed,
 ) -> std::io::Result<Running> {
     let began = clock::monotonic();
     let events = Arc::new(Events::new(began));
@@ -117,13 +132,15 @@ pub fn start(
         page,
         stations,
         hands,
-        body,
+        body: embodied,
+        apart,
         taps,
         halt,
+        watchdog,
     } = machine;
     let directory = Directory::of(&creature, name);
-    let floor = body.as_ref().map_or(Value::Null, |b| b.world.floor());
-    let causes = Causes::all().map(|(_, name)| name.to_string()).collect();
+    let floor = embodied.as_ref().map_or(Value::Null, |b| b.world.floor());
+    let causes = Causes::named().map(|(_, name)| name.to_string()).collect();
     let manifest = Manifest::of(&creature, name, &settings.file, began, causes);
     let plugs = Plugs::new(creature.clone(), directory, hands, events.clone());
     let shared = Arc::new(Shared {
@@ -133,94 +150,79 @@ pub fn start(
         events,
         plugs,
         domain,
-        floor,
+        floor: Mutex::new(floor),
         recorder: Recorder::new(manifest, settings.flight.is_some()),
         status: Mutex::new(Arc::new(json!({}))),
     });
     let (stop, leave) = (Arc::new(AtomicBool::new(false)), Arc::new(AtomicBool::new(false)));
-    let mut refusals: Vec<Refusal> = host::lock_memory().err().into_iter().collect();
+    let planned = plan::threads(&creature).map_err(|faults| {
+        let text = faults.join("; ");
+        std::io::Error::new(std::io::ErrorKind::InvalidInput, text)
+    })?;
+    let mut crew = Crew::new(Start {
+        begin: clock::monotonic() + START_WAIT,
+        halt: halt.clone(),
+        stop: stop.clone(),
+        policy: creature.executor.policy,
+        threads: planned.len(),
+    });
+    crew.refusals.extend(host::be_ordinary().err());
+    crew.refusals.extend(host::lock_memory().err());
     host::limit_runaway();
-    // Time for every thread to be ready before the first beat is due.
-    let begin = clock::monotonic() + Span::millis(50);
-    let mut beating = Vec::new();
-    let mut records = Vec::new();
     let mut helpers = Vec::new();
-    let mut feeds = Vec::new();
     if let Some(path) = &settings.record {
         helpers.push(recorder::listener::into_file(shared.clone(), path)?);
     }
-    let mut periods: Vec<Span> = stations.iter().map(|s| s.spec.period).collect();
-    periods.sort();
-    periods.dedup();
-    for mut station in stations {
-        let (tracer, trace) = traced(station.spec.period, station.running.ports());
-        station.running.trace(tracer);
-        feeds.push(Feed::new(trace, station.gauge.clone()));
-        let spec = &station.spec;
-        let rank = periods.iter().position(|p| *p == spec.period).unwrap_or(0);
-        let monotonic = PRIORITY_MAX.saturating_sub(1 + rank as u8).max(1);
-        let plan = Plan {
-            name: spec.name.clone(),
-            period: spec.period,
-            phase: spec.phase,
-            priority: Some(spec.priority.unwrap_or(monotonic)),
-            cpu: spec.cpu,
-            overrun: spec.overrun,
-        };
-        let (name, level, period) = (spec.name.clone(), spec.level, spec.period);
-        let gauge = station.gauge.clone();
-        let thread = executor::start(
-            plan,
-            begin,
-            LayerBeats(station.running),
-            gauge.clone(),
-            halt.clone(),
-            stop.clone(),
-        )?;
-        keep(
-            &mut beating,
-            &mut records,
-            &mut refusals,
-            thread,
-            (&name, Some(level), period, gauge),
-        );
-    }
+    crew.start_layers(planned, stations)?;
     let view = Arc::new(Mutex::new(json!({})));
+    let progress = watchdog.progress.clone();
+    if let Some(spec) = &creature.body {
+        crew.start_watchdog(watchdog, spec.period)?;
+    }
     if let Some(Embodied {
-        mut motor,
+        motor,
         world,
         link,
         gauge,
-    }) = body
+    }) = embodied
     {
         let period = motor.period();
-        let (tracer, trace) = traced(period, motor.ports());
-        motor.trace(tracer);
-        feeds.push(Feed::new(trace, gauge.clone()));
-        let plan = Plan {
-            name: "motor".into(),
-            period,
-            phase: Span::ZERO,
-            priority: Some(PRIORITY_MAX),
-            cpu: None,
-            overrun: Overrun::Skip,
-        };
-        let thread = executor::start(
-            plan,
-            begin,
-            MotorBeats(motor),
-            gauge.clone(),
-            halt.clone(),
-            stop.clone(),
-        )?;
-        keep(
-            &mut beating,
-            &mut records,
-            &mut refusals,
-            thread,
-            ("motor", None, period, gauge),
-        );
+        crew.start_motor(motor, gauge)?;
         helpers.push(live(world, link, period, view.clone(), leave.clone())?);
+    }
+    if let (Some(apart), Some(spec), Some(body)) = (apart, &creature.body, body) {
+        let Apart {
+            motor,
+            gauge,
+            giver,
+            first,
+        } = apart;
+        crew.start_motor(motor, gauge)?;
+        let remote = Remote {
+            name: body.into(),
+            declaration: spec.declaration,
+            first,
+            giver,
+        };
+        helpers.push(remote::keep(remote, shared.clone(), view.clone(), leave.clone())?);
+    }
+    let Crew {
+        beating,
+        records,
+        feeds,
+        mut refusals,
+        ..
+    } = crew;
+    if !creature.executor.best_effort && !refusals.is_empty() {
+        stop.store(true, Ordering::Relaxed);
+        leave.store(true, Ordering::Relaxed);
+        shared.recorder.end();
+        beating.into_iter().for_each(Beating::join);
+        helpers.into_iter().for_each(|helper| drop(helper.join()));
+        return Err(refused(&refusals));
+    }
+    if creature.body.is_some() {
+        helpers.push(feeder::feed(fed, progress, shared.clone(), leave.clone())?);
     }
     refusals.dedup();
     helpers.push(keeper(owned, shared.clone(), leave.clone())?);
@@ -248,6 +250,7 @@ pub fn start(
             .clone(),
         gauge: filed.gauge.clone(),
     });
+    let records = Arc::new(Mutex::new(records));
     let watcher = Watcher {
         shared: shared.clone(),
         began,
@@ -259,16 +262,18 @@ pub fn start(
         notes: refusals.iter().map(Refusal::to_string).collect(),
         taps: watched_taps.collect(),
         wires: net,
-        records,
+        records: records.clone(),
         view,
         rates: Rates::default(),
         causes: Causes::NONE,
+        counts: Vec::new(),
     };
     helpers.push(watcher.watch(leave.clone())?);
     helpers.push(recorder::start(shared.clone(), feeds, settings, leave.clone())?);
     Ok(Running {
         shared,
         refusals,
+        records,
         beating,
         helpers,
         stop,
@@ -282,46 +287,39 @@ fn layer_of(creature: &Creature, tap: &ipc::wiring::creature::Tap) -> String {
     layer.map_or(String::new(), |l| l.name.clone())
 }
 
-fn traced(period: Span, (registers, outlets): (usize, usize)) -> (Tracer, Trace) {
-    trace::trace(period, registers, outlets)
-}
-
-fn keep(
-    beating: &mut Vec<Beating>,
-    records: &mut Vec<Record>,
-    refusals: &mut Vec<Refusal>,
-    mut thread: Beating,
-    (name, level, period, gauge): (&str, Option<u8>, Span, Arc<executor::gauge::BeatGauge>),
-) {
-    for refusal in std::mem::take(&mut thread.refusals) {
-        if !refusals.iter().any(|r| r.grants == refusal.grants) {
-            refusals.push(refusal);
-        }
-    }
-    let (_, empty) = rtrb::RingBuffer::new(1);
-    let samples = std::mem::replace(&mut thread.samples, empty);
-    records.push(Record::new(name, level, period, gauge, samples));
-    beating.push(thread);
-}
-
 impl Running {
     /// Kernel thread ids of the real-time threads, with their names.
     pub fn threads(&self) -> Vec<(String, i32)> {
         self.beating.iter().map(|b| (b.name.clone(), b.tid)).collect()
     }
 
-    /// Halts the body, waits until it stands, ends every thread.
-    pub fn shut_down(mut self) {
-        self.shared.halt.halt(Causes::SHUTDOWN);
+    /// Halts the body, waits until it stands, and ends the process with a failure: shared memory was cut short
+    /// under it, and what iceoryx2 keeps there may be gone as well. The next start removes what remains.
+    pub fn leave_cut(&self) -> ! {
+        self.shared.halt.halt(Causes::MEMORY);
+        let text = "a shared-memory segment was cut short by another process; halting, then leaving";
+        self.shared.events.note("halt", None, text);
+        self.come_to_a_stand(Causes::MEMORY);
+        std::process::exit(1)
+    }
+
+    /// Waits until the gate has closed for `cause` and the body stands.
+    fn come_to_a_stand(&self, cause: Causes) {
         // Ten beats of the motor unit at its default period; then its end of the link is stale anyway.
         for _ in 0..20 {
-            if self.shared.halt.decided().0.has(Causes::SHUTDOWN) {
+            if self.shared.halt.decided().0.has(cause) {
                 break;
             }
             std::thread::sleep(Duration::from_millis(10));
         }
         // From full speed at the braking of a small robot: 0.3 m/s at 1 m/s².
         std::thread::sleep(Duration::from_millis(300));
+    }
+
+    /// Halts the body, waits until it stands, ends every thread.
+    pub fn shut_down(mut self) {
+        self.shared.halt.halt(Causes::SHUTDOWN);
+        self.come_to_a_stand(Causes::SHUTDOWN);
         self.stop.store(true, Ordering::Relaxed);
         self.beating.drain(..).for_each(Beating::join);
         self.leave.store(true, Ordering::Relaxed);
@@ -349,11 +347,12 @@ fn live(
         let mut due = clock::monotonic();
         while !leave.load(Ordering::Relaxed) {
             let now = clock::monotonic();
-            world.tick(now, &mut link);
+            body::turn(world.as_mut(), &mut link, clock::monotonic);
             *view.lock().expect("nobody panics holding the view") = world.view();
             due = due.max(now - period) + period;
             clock::sleep_until(due);
         }
+        world.halt();
     })
 }
 
@@ -371,122 +370,4 @@ fn keeper(owned: OwnedPage, shared: Arc<Shared>, leave: Arc<AtomicBool>) -> std:
             std::thread::sleep(Duration::from_millis(5));
         }
     })
-}
-
-/// Looks at everything ten times a second.
-struct Watcher {
-    shared: Arc<Shared>,
-    began: Time,
-    mode: &'static str,
-    notes: Vec<String>,
-    wires: Vec<Watched>,
-    taps: Vec<WatchedTap>,
-    records: Vec<Record>,
-    view: Arc<Mutex<Value>>,
-    rates: Rates,
-    causes: Causes,
-}
-
-impl Watcher {
-    fn watch(mut self, leave: Arc<AtomicBool>) -> std::io::Result<JoinHandle<()>> {
-        std::thread::Builder::new().name("watcher".into()).spawn(move || {
-            while !leave.load(Ordering::Relaxed) {
-                self.look();
-                std::thread::sleep(Duration::from_millis(100));
-            }
-        })
-    }
-
-    fn look(&mut self) {
-        let now = clock::monotonic();
-        for record in &mut self.records {
-            let new = record.drain();
-            if new > 0 {
-                let text = format!(
-                    "{} ran over its period {new} times (of {} beats)",
-                    record.name,
-                    record.gauge.counts().beats
-                );
-                self.shared.events.note("overrun", Some(&record.name), text);
-            }
-        }
-        self.note_halts();
-        let status = self.status(now);
-        *self
-            .shared
-            .status
-            .lock()
-            .expect("nobody panics holding the status") = Arc::new(status);
-    }
-
-    /// Notes when the body halts and goes on; a reflex is everyday life and not noted.
-    fn note_halts(&mut self) {
-        let causes = self.shared.halt.decided().0.without(Causes::REFLEX);
-        if causes == self.causes {
-            return;
-        }
-        let text = match causes {
-            Causes::NONE => "the body may move".to_string(),
-            some => format!("the body is halted: {}", some.names().join(", ")),
-        };
-        self.causes = causes;
-        self.shared.events.note("halt", None, text);
-    }
-
-    fn status(&mut self, now: Time) -> Value {
-        let attached = self.shared.plugs.attached();
-        let mut wires: Vec<Value> = self
-            .wires
-            .iter()
-            .map(|w| status::wire(w, &mut self.rates, now))
-            .collect();
-        let mut taps: Vec<Value> = self.taps.iter().map(|t| status::tap(t, now)).collect();
-        let mut layers = status::layers(&self.records);
-        for a in &attached {
-            layers.push(status::attached(a));
-            for (index, output) in a.plug.outputs.iter().enumerate() {
-                let Some(reader) = a.page.reader(index, output.kind) else {
-                    continue;
-                };
-                let watched = Watched {
-                    name: output.name.clone(),
-                    unit: output.unit.clone(),
-                    reader,
-                };
-                wires.push(status::wire(&watched, &mut self.rates, now));
-            }
-            for t in &a.taps {
-                let watched = WatchedTap {
-                    how: t.tap.how,
-                    from: t.tap.from.clone(),
-                    to: t.tap.to.clone(),
-                    time_constant: t.tap.time_constant,
-                    layer: (a.plug.layer.clone(), a.plug.level),
-                    reader: t.reader.clone(),
-                    gauge: t.gauge.clone(),
-                };
-                taps.push(status::tap(&watched, now));
-            }
-        }
-        let (causes, since) = self.shared.halt.decided();
-        let events = self.shared.events.after(0);
-        let newest: Vec<_> = events.iter().rev().take(50).rev().collect();
-        let mut status = json!({
-            "creature": self.shared.name, "pid": std::process::id(),
-            "time_s": now.since(self.began).seconds(), "graph_version": self.shared.plugs.version(),
-            "mode": self.mode, "notes": self.notes,
-            "halt": {
-                "halted": causes != Causes::NONE, "causes": causes.names(),
-                "since_s": since.since(self.began).seconds(), "latched": causes.has(Causes::LATCHED),
-            },
-            "halts": self.shared.halt.counts().collect::<BTreeMap<_, _>>(),
-            "wires": wires, "taps": taps, "layers": layers, "events": newest,
-            "real_time_allocations": alloc::broken(),
-        });
-        let view = self.view.lock().expect("nobody panics holding the view").clone();
-        if let (Some(status), Value::Object(view)) = (status.as_object_mut(), view) {
-            status.extend(view);
-        }
-        status
-    }
 }

@@ -8,17 +8,31 @@ use hdrhistogram::Histogram;
 use ipc::clock::{self, Span, Time};
 use ipc::message::Kind;
 use ipc::tap::Window;
-use ipc::wire::{Reader, TapGauge};
-use ipc::wiring::creature::How;
+use ipc::wire::{AHEAD_MAX, Reader, TapGauge};
+use ipc::wiring::creature::{How, Wake};
 use rtrb::Consumer;
 use serde_json::{Value, json};
 use std::sync::Arc;
 
-use crate::executor::gauge::{BeatGauge, Sample};
+use crate::executor::Plan;
+use crate::executor::gauge::{BeatCounts, BeatGauge, Sample};
 use crate::plugs::Attached;
 
 /// Longest latency that is told apart; longer ones count as this.
 const LATENCY_MAX_NS: u64 = 10_000_000_000;
+
+/// Histograms of one layer, in nanoseconds; `docs/timing.md` says what each number means.
+#[derive(Clone, Debug)]
+pub struct Measured {
+    /// From the moment a beat was due to the moment its thread ran.
+    pub wake_up: Histogram<u64>,
+    /// How long a beat of the layer took.
+    pub step: Histogram<u64>,
+    /// From the moment a beat was due to its end.
+    pub response: Histogram<u64>,
+    /// By how much the time between two wake-ups differed from the time between their beats.
+    pub period_error: Histogram<u64>,
+}
 
 /// Histograms of what one thread measured.
 pub struct Record {
@@ -26,15 +40,19 @@ pub struct Record {
     pub name: String,
     /// Its level; none for the motor unit.
     pub level: Option<u8>,
-    /// Time between its beats.
-    pub period: Span,
+    /// How its thread beats.
+    pub plan: Plan,
     /// Its counters.
     pub gauge: Arc<BeatGauge>,
     samples: Consumer<Sample>,
     latency: Histogram<u64>,
     step: Histogram<u64>,
-    /// Overruns at the last look, to notice new ones.
-    overruns: u64,
+    response: Histogram<u64>,
+    period_error: Histogram<u64>,
+    /// When the thread woke for the beat before; none before the first.
+    woke: Option<(Time, Time)>,
+    /// Counters at the last look, to notice what is new.
+    before: BeatCounts,
     /// Longest latency of each of the last seconds, oldest first, in microseconds.
     trail: VecDeque<f64>,
     /// Longest latency since the last second ended, and how many looks ago that was.
@@ -52,7 +70,7 @@ impl Record {
     pub fn new(
         name: &str,
         level: Option<u8>,
-        period: Span,
+        plan: &Plan,
         gauge: Arc<BeatGauge>,
         samples: Consumer<Sample>,
     ) -> Self {
@@ -60,24 +78,57 @@ impl Record {
         Record {
             name: name.into(),
             level,
-            period,
+            plan: plan.clone(),
             gauge,
             samples,
             latency: histogram(),
             step: histogram(),
-            overruns: 0,
+            response: histogram(),
+            period_error: histogram(),
+            woke: None,
+            before: BeatCounts::default(),
             trail: VecDeque::new(),
             longest: (0.0, 0),
         }
     }
 
-    /// Takes in what was measured since the last look; says how many overruns are new.
-    pub fn drain(&mut self) -> u64 {
+    /// Takes in what was measured since the last look; says in words what deadlines were missed.
+    pub fn drain(&mut self) -> Option<String> {
         while let Ok(sample) = self.samples.pop() {
             self.latency.saturating_record(sample.latency.0.max(1));
             self.step.saturating_record(sample.step.0.max(1));
             self.longest.0 = self.longest.0.max(sample.latency.0 as f64 / 1e3);
+            self.response.saturating_record(sample.response.0.max(1));
+            let woke = sample.due + sample.latency;
+            if let Some((due, before)) = self.woke.replace((sample.due, woke)) {
+                let error = sample.due.since(due).0.abs_diff(woke.since(before).0);
+                self.period_error.saturating_record(error.max(1));
+            }
         }
+        self.keep_trail();
+        let now = self.gauge.counts();
+        let before = std::mem::replace(&mut self.before, now);
+        if now.identity_faults > before.identity_faults {
+            return Some(format!(
+                "{}: beats and skipped beats do not add up to the time elapsed",
+                self.name
+            ));
+        }
+        let (missed, over) = (now.missed - before.missed, now.overruns - before.overruns);
+        (missed + over > 0).then(|| {
+            format!(
+                "{} missed {missed} deadlines ({over} of its own making, {} skipped; {} of {} beats so far, at most {} in a row)",
+                self.name,
+                now.skipped - before.skipped,
+                now.missed,
+                now.beats,
+                now.missed_in_row_max
+            )
+        })
+    }
+
+    /// Keeps the longest latency of each second.
+    fn keep_trail(&mut self) {
         self.longest.1 += 1;
         if self.longest.1 == LOOKS {
             if self.trail.len() == TRAIL_MAX {
@@ -86,22 +137,40 @@ impl Record {
             self.trail.push_back(self.longest.0);
             self.longest = (0.0, 0);
         }
-        let overruns = self.gauge.counts().overruns;
-        let new = overruns - self.overruns;
-        self.overruns = overruns;
-        new
+    }
+
+    /// Everything measured so far.
+    pub fn measured(&self) -> Measured {
+        Measured {
+            wake_up: self.latency.clone(),
+            step: self.step.clone(),
+            response: self.response.clone(),
+            period_error: self.period_error.clone(),
+        }
     }
 
     fn show(&self) -> Value {
         let counts = self.gauge.counts();
         json!({
-            "name": self.name, "level": self.level, "period_ms": self.period.as_millis_f64(),
+            "name": self.name, "level": self.level, "period_ms": self.plan.period.as_millis_f64(),
+            "schedule": self.plan.schedule.to_string(), "wake": wake(self.plan.wake), "cpu": self.plan.cpu,
+            "thread": self.plan.name,
             "beats": counts.beats, "skipped": counts.skipped, "overruns": counts.overruns,
-            "lost_samples": counts.lost_samples, "attached": false,
+            "missed": counts.missed, "missed_in_row_max": counts.missed_in_row_max,
+            "identity_faults": counts.identity_faults, "lost_samples": counts.lost_samples, "attached": false,
             "latency_us": percentiles(&self.latency), "step_us": percentiles(&self.step),
+            "response_us": percentiles(&self.response), "period_error_us": percentiles(&self.period_error),
             "histogram": bars(&self.latency), "step_histogram": bars(&self.step),
             "latency_sum_us": sum(&self.latency), "step_sum_us": sum(&self.step), "trail_us": self.trail,
         })
+    }
+}
+
+/// How a thread waits for its beat, in words.
+fn wake(wake: Wake) -> String {
+    match wake {
+        Wake::Sleep => "sleep".into(),
+        Wake::Spin(lead) => format!("spin {lead}"),
     }
 }
 
@@ -145,6 +214,13 @@ pub struct Rates {
 }
 
 impl Rates {
+    /// Forgets wires that are no longer there, so that layers that come under ever new names leave nothing.
+    pub fn keep_only(&mut self, wires: &[Value]) {
+        let names: std::collections::HashSet<&str> =
+            wires.iter().filter_map(|w| w["wire"].as_str()).collect();
+        self.seen.retain(|name, _| names.contains(name.as_str()));
+    }
+
     fn of(&mut self, name: &str, number: u64, now: Time) -> f64 {
         let (before, at, rate) = self.seen.entry(name.into()).or_insert((number, now, 0.0));
         if number < *before {
@@ -203,7 +279,9 @@ pub struct WatchedTap {
 
 /// Shows a tap: whether it holds, and for how long still.
 pub fn tap(t: &WatchedTap, now: Time) -> Value {
-    let window = t.reader.read().map(|r| Window {
+    // What is stamped in the future is no message: see the register.
+    let reading = t.reader.read().filter(|r| r.stamp <= now + AHEAD_MAX);
+    let window = reading.map(|r| Window {
         stamp: r.stamp.min(now),
         time_constant: t.time_constant,
     });

@@ -2,7 +2,8 @@
 
 use std::sync::Arc;
 
-use ipc::wiring::creature::{BODY, Creature};
+use ipc::control::Plug;
+use ipc::wiring::creature::Creature;
 use serde_json::{Value, json};
 
 use crate::gate::Causes;
@@ -15,7 +16,7 @@ pub struct View(pub Arc<Shared>);
 impl page::Source for View {
     fn plan(&self) -> String {
         let shared = &self.0;
-        let floor = shared.floor.clone();
+        let floor = shared.floor();
         let radius = floor.get("robot_radius_m").cloned().unwrap_or(Value::Null);
         json!({
             "creature": shared.name, "floor": floor, "robot_radius_m": radius,
@@ -40,58 +41,9 @@ impl page::Source for View {
     }
 }
 
-/// The wiring as the page draws it.
+/// The wiring as the page shows it: the picture, made by the library that also draws files.
 pub fn graph(creature: &Creature, attached: &[Attached]) -> Value {
-    let mut wires: Vec<(String, Vec<String>)> = Vec::new();
-    let mut wire = |from: String, to: String| match wires.iter_mut().find(|(f, _)| *f == from) {
-        Some((_, tos)) => tos.push(to),
-        None => wires.push((from, vec![to])),
-    };
-    let mut layers = Vec::new();
-    let mut taps = Vec::new();
-    for layer in &creature.layers {
-        let names = |ports: &[ipc::wiring::Port]| ports.iter().map(|p| p.name).collect::<Vec<_>>();
-        let modules: Vec<Value> = layer
-            .modules
-            .iter()
-            .map(|m| {
-                let d = m.declaration;
-                json!({"name": m.name, "kind": d.name, "inputs": names(d.inputs), "outputs": names(d.outputs)})
-            })
-            .collect();
-        layers.push(json!({"name": layer.name, "level": layer.level, "process": null, "modules": modules}));
-        layer
-            .wires
-            .iter()
-            .for_each(|w| wire(w.from.to_string(), w.to.to_string()));
-        for t in &layer.taps {
-            taps.push(json!({
-                "kind": t.how, "from": t.from.to_string(), "to": t.to.to_string(),
-                "time_constant_ms": t.time_constant.as_millis_f64(),
-            }));
-        }
-    }
-    for a in attached {
-        let process = format!("pid {}", a.plug.pid);
-        layers.push(json!({"name": a.plug.layer, "level": a.plug.level, "process": process, "modules": a.plug.modules}));
-        a.plug
-            .wires
-            .iter()
-            .for_each(|(from, to)| wire(from.clone(), to.clone()));
-        for t in &a.plug.taps {
-            taps.push(json!({
-                "kind": t.how, "from": t.from, "to": t.to, "time_constant_ms": t.time_constant.as_millis_f64(),
-            }));
-        }
-    }
-    let ports = |ports: &[ipc::wiring::Port]| ports.iter().map(|p| p.name).collect::<Vec<_>>();
-    let body = creature.body.as_ref().map(|b| {
-        json!({"name": BODY, "kind": b.declaration.name, "inputs": ports(b.declaration.inputs),
-               "outputs": ports(b.declaration.outputs)})
-    });
-    let wires: Vec<Value> = wires
-        .into_iter()
-        .map(|(from, to)| json!({"from": from, "to": to}))
-        .collect();
-    json!({"layers": layers, "body": body, "wires": wires, "taps": taps})
+    let joined: Vec<Plug> = attached.iter().map(|a| a.plug.clone()).collect();
+    let model = graph::of_creature(creature, &[], &joined);
+    json!({"svg": graph::svg(&graph::draw(&model), graph::Dress::Page)})
 }

@@ -220,7 +220,7 @@ fn layers_that_want_more_than_they_may_are_refused_with_every_reason() {
         refused(&|p| p.outputs[0].kind = Kind::Number).contains("does not carry what turn.heading takes")
     );
     assert!(refused(&|p| p.taps[0].time_constant = Span::ZERO).contains("needs a time constant"));
-    assert!(refused(&|p| p.taps[0].time_constant = Span::secs(3600)).contains("is above 60s"));
+    assert!(refused(&|p| p.taps[0].time_constant = Span::secs(3600)).contains("at most 60s"));
     let halt = refused(&|p| {
         p.taps[0].how = How::Inhibit;
         p.taps[0].to = "collide.halt".into();

@@ -29,7 +29,7 @@ fn creature(text: &str) -> Creature {
 /// layers find what others wrote a moment ago, or just don't.
 fn live(text: &str, seconds: u64) -> (Arc<Manifest>, Vec<Item>) {
     let creature = creature(text);
-    let causes = Causes::all().map(|(_, name)| name.to_string()).collect();
+    let causes = Causes::named().map(|(_, name)| name.to_string()).collect();
     let manifest = Arc::new(Manifest::of(&creature, "allen", text, BEGIN, causes));
     let page = Page::in_memory(output_ports(&creature).count());
     let mut machine = Machine::new(creature, &kinds(), page, None);

@@ -1,5 +1,6 @@
 //! All that two processes of a creature must agree on.
 //!
+//! - [`body`]: how a daemon and the process that runs its body find each other
 //! - [`clock`]: the only place that tells the time, real or virtual
 //! - [`message`]: what travels on a wire
 //! - [`control`]: how layer processes and tools speak to a daemon
@@ -9,6 +10,7 @@
 //!
 //! Must never know a behaviour or a body.
 
+pub mod body;
 pub mod clock;
 pub mod control;
 pub mod message;

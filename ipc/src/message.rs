@@ -52,6 +52,7 @@ pub const KINDS: [Kind; 7] = [
 
 impl Kind {
     /// How many words a message of this kind has.
+    #[inline]
     pub const fn words(self) -> usize {
         match self {
             Kind::Pulse => 0,
@@ -60,6 +61,12 @@ impl Kind {
             Kind::Pose => 3,
             Kind::Map => SONARS,
         }
+    }
+
+    /// Whether a message of this kind is one word: most are.
+    #[inline]
+    pub const fn single(self) -> bool {
+        matches!(self, Kind::Bit | Kind::Number)
     }
 
     /// The kind's name as it stands in creature files.
@@ -77,6 +84,7 @@ impl Kind {
 
     /// Whether `words` is a message of this kind with every number between `low` and `high`.
     /// Not-a-number and infinities never are; a bit is 0 or 1.
+    #[inline]
     pub fn accepts(self, words: &Words, low: f64, high: f64) -> bool {
         let used = &words[..self.words()];
         match self {
@@ -98,6 +106,11 @@ pub trait Payload: Copy {
     const KIND: Kind;
     /// The words it is made of.
     fn pack(self) -> Words;
+    /// Puts the words it is made of where a message of its kind was before; the others are zero already.
+    #[inline]
+    fn put(self, words: &mut Words) {
+        *words = self.pack();
+    }
     /// The value that `words` stand for.
     fn unpack(words: &Words) -> Self;
 }
@@ -153,6 +166,9 @@ impl Payload for Pulse {
     fn pack(self) -> Words {
         [0.0; WORDS_MAX]
     }
+    #[inline]
+    fn put(self, _: &mut Words) {}
+    #[inline]
     fn unpack(_: &Words) -> Self {
         Pulse
     }
@@ -163,6 +179,11 @@ impl Payload for bool {
     fn pack(self) -> Words {
         words_of(&[f64::from(u8::from(self))])
     }
+    #[inline]
+    fn put(self, words: &mut Words) {
+        words[0] = f64::from(u8::from(self));
+    }
+    #[inline]
     fn unpack(words: &Words) -> Self {
         words[0] != 0.0
     }
@@ -173,6 +194,11 @@ impl Payload for f64 {
     fn pack(self) -> Words {
         words_of(&[self])
     }
+    #[inline]
+    fn put(self, words: &mut Words) {
+        words[0] = self;
+    }
+    #[inline]
     fn unpack(words: &Words) -> Self {
         words[0]
     }
@@ -234,6 +260,9 @@ mod tests {
 
     fn goes_round<T: Payload + PartialEq + fmt::Debug>(value: T) {
         assert_eq!(T::unpack(&value.pack()), value);
+        let mut put = [0.0; WORDS_MAX];
+        value.put(&mut put);
+        assert_eq!(put, value.pack());
         assert!(T::KIND.accepts(&value.pack(), f64::MIN, f64::MAX));
     }
 

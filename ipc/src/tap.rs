@@ -30,6 +30,7 @@ pub struct Window {
 
 impl Window {
     /// Whether a message written at `u` falls into the window: t ≤ u < t+τ.
+    #[inline]
     pub fn holds(self, u: Time) -> bool {
         self.stamp <= u && u.since(self.stamp) < self.time_constant
     }
@@ -45,6 +46,7 @@ impl Window {
 }
 
 /// Whether an output may emit a message at `u`, given the windows of all inhibitors on it.
+#[inline]
 pub fn emits(u: Time, inhibitors: impl IntoIterator<Item = Window>) -> bool {
     !inhibitors.into_iter().any(|window| window.holds(u))
 }
@@ -54,6 +56,7 @@ pub fn emits(u: Time, inhibitors: impl IntoIterator<Item = Window>) -> bool {
 /// `above` are the windows of the suppressors further along the wire: for a message on the existing
 /// wire all of them, for one on a tap those that come later in the series (higher level, or the same
 /// level and declared later).
+#[inline]
 pub fn passes(u: Time, above: impl IntoIterator<Item = Window>) -> bool {
     !above.into_iter().any(|window| window.holds(u))
 }

@@ -14,12 +14,13 @@ use std::time::{Duration, Instant};
 
 use afsm::layer::RunningLayer;
 use afsm::trace::{Trace, trace};
+use daemon::executor::plan::Schedule;
 use daemon::executor::{self, Beating, Beats, Plan, host};
+use daemon::halt::HaltChannel;
 use daemon::machine::{Machine, kinds};
-use daemon::motor::HaltChannel;
 use ipc::clock::{self, Span, Time};
 use ipc::wire::Page;
-use ipc::wiring::creature::Overrun;
+use ipc::wiring::creature::{Overrun, Wake};
 use ipc::wiring::directory::output_ports;
 use ipc::wiring::{Source, check};
 use recording::{Item, Manifest, Writer};
@@ -77,12 +78,21 @@ fn start(
         name: if traced { "traced" } else { "plain" }.into(),
         period: PERIOD,
         phase,
-        priority: Some(40),
+        schedule: Schedule::Fifo(40),
         cpu: Some(0),
+        wake: Wake::Sleep,
         overrun: Overrun::Skip,
+        sealed: true,
     };
     let halt = Arc::new(HaltChannel::default());
-    let beating = executor::start(plan, begin, Layer(running), Arc::default(), halt, stop.clone());
+    let beating = executor::start(
+        plan,
+        begin,
+        Layer(running),
+        vec![Arc::default()],
+        halt,
+        stop.clone(),
+    );
     (beating.expect("the host gives a thread"), out, manifest)
 }
 
@@ -110,7 +120,7 @@ fn round(seconds: u64, traced_first: bool) -> ([Vec<u64>; 2], u64) {
                 .expect("nothing takes anything");
         }
         for (beating, steps) in [&mut plain, &mut traced].into_iter().zip(&mut steps) {
-            steps.extend(std::iter::from_fn(|| beating.samples.pop().ok()).map(|s| s.step.0));
+            steps.extend(std::iter::from_fn(|| beating.samples[0].pop().ok()).map(|s| s.step.0));
         }
     }
     stop.store(true, Ordering::Relaxed);

@@ -4,13 +4,13 @@ use std::collections::BTreeSet;
 
 use afsm::Kinds;
 use daemon::body::Place;
-use daemon::body::office::OfficeWorld;
+use daemon::body::office::{OfficeGuard, OfficeWorld};
 use daemon::machine::{Machine, kinds};
 use daemon::virtual_run::VirtualRun;
 use ipc::clock::Span;
 use ipc::wire::{Page, Reader};
 use ipc::wiring::{Source, check, directory::output_ports};
-use office::{Contacts, Office, Pose};
+use office::{Contacts, Pose};
 
 use crate::Allen;
 
@@ -88,10 +88,10 @@ impl Trial {
     ///
     /// # Panics
     /// When the creature's body is of another kind.
-    pub fn office(&mut self) -> &mut Office {
+    pub fn office(&mut self) -> OfficeGuard<'_> {
         let body = self.run.machine.body.as_mut().expect("the creature has a body");
         let world = body.world.as_any().downcast_mut::<OfficeWorld>();
-        &mut world.expect("the body is in an office").office
+        world.expect("the body is in an office").office()
     }
 
     /// Where the robot is.
@@ -148,12 +148,13 @@ impl Trial {
             rooms.extend(room_of(now));
             before = now;
         }
+        let office = self.office();
         Figures {
-            travelled_m: self.office().distance_travelled_m(),
+            travelled_m: office.distance_travelled_m(),
             headings: headings.len(),
             rooms,
             drift_m,
-            contacts: self.office().contacts().clone(),
+            contacts: office.contacts().clone(),
         }
     }
 }

@@ -1,51 +1,55 @@
 //! Checking creature files, and explaining the kinds of module.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use daemon::machine::kinds;
-use ipc::wiring::catalog::{Declaration, Takes};
-use ipc::wiring::diagnostic::one_of;
-use ipc::wiring::{Catalog, Port, Source, check as checker};
+use ipc::wiring::{Creature, Directory, Rejected, Source, check as checker, schema};
 use serde_json::json;
 
-pub(crate) fn check(files: &[PathBuf], as_json: bool) -> ExitCode {
-    let mut wrong = false;
+use crate::paint::{self, Color};
+
+/// What to check, and how to tell.
+pub(crate) struct Wanted<'w> {
+    pub(crate) files: &'w [PathBuf],
+    /// The creature file that manifests are checked against.
+    pub(crate) host: Option<&'w Path>,
+    /// Whether every file is a manifest.
+    pub(crate) manifests: bool,
+    pub(crate) color: Color,
+    pub(crate) json: bool,
+}
+
+/// A file that was read, and what it is.
+struct Given {
+    source: Source,
+    /// What a manifest wants to join.
+    host: Option<Directory>,
+}
+
+pub(crate) fn check(wanted: &Wanted<'_>) -> ExitCode {
     let mut found = Vec::new();
-    for path in files {
-        let name = path.display().to_string();
-        let checked = match std::fs::read_to_string(path) {
-            Ok(text) => checker::creature(&Source::new(&name, text), &kinds()),
-            Err(e) => {
-                wrong = true;
-                let help = "expected the path of a creature file (TOML)";
-                eprintln!("{name}: cannot be read: {e}; {help}");
-                found.push(
-                    json!({"file": name, "line": 0, "column": 0, "message": e.to_string(), "help": help}),
-                );
-                continue;
-            }
-        };
+    let mut wrong = false;
+    for path in wanted.files {
+        let checked = given(path, wanted).and_then(|given| {
+            let checked = match &given.host {
+                None => checker::creature(&given.source, &kinds()),
+                Some(host) => checker::manifest(&given.source, &kinds(), host),
+            };
+            checked.map(|c| (c, given.host)).map_err(Trouble::Rejected)
+        });
         match checked {
-            Ok(creature) if !as_json => {
-                let modules: usize = creature.layers.iter().map(|l| l.modules.len()).sum();
-                println!(
-                    "{name}: {} is sound ({} layers, {modules} modules)",
-                    creature.name,
-                    creature.layers.len()
-                );
+            Ok((creature, host)) if !wanted.json => {
+                println!("{}: {}", path.display(), sound(&creature, host))
             }
             Ok(_) => {}
-            Err(rejected) => {
+            Err(trouble) => {
                 wrong = true;
-                found.extend(rejected.located().into_iter().map(|l| json!(l)));
-                if !as_json {
-                    eprintln!("{rejected}");
-                }
+                found.extend(trouble.tell(path, wanted));
             }
         }
     }
-    if as_json {
+    if wanted.json {
         println!("{}", json!({ "errors": found }));
     }
     if wrong {
@@ -55,82 +59,98 @@ pub(crate) fn check(files: &[PathBuf], as_json: bool) -> ExitCode {
     }
 }
 
-pub(crate) fn modules(name: Option<&str>, as_json: bool) -> ExitCode {
-    let mut known = kinds().modules();
-    known.sort_by_key(|d| d.name);
-    if let Some(name) = name {
-        known.retain(|d| d.name == name);
-        if known.is_empty() {
-            let all = kinds().modules();
-            eprintln!(
-                "unknown kind of module {name:?}; {}",
-                one_of("kind", name, all.iter().map(|d| d.name))
-            );
-            return ExitCode::from(2);
+fn sound(creature: &Creature, host: Option<Directory>) -> String {
+    let count = |n: usize, what: &str| format!("{n} {what}{}", if n == 1 { "" } else { "s" });
+    let modules = count(creature.layers.iter().map(|l| l.modules.len()).sum(), "module");
+    match host {
+        None => {
+            let layers = count(creature.layers.len(), "layer");
+            format!("{} is sound ({layers}, {modules})", creature.name)
+        }
+        Some(host) => {
+            let name = creature.layers.first().map_or("", |l| l.name.as_str());
+            format!("layer {name} is sound ({modules}) and may join {}", host.creature)
         }
     }
-    if as_json {
-        let shown: Vec<_> = known.iter().map(|d| describe(d)).collect();
-        println!("{}", json!({ "modules": shown }));
-    } else if name.is_some() {
-        known.iter().for_each(|d| explain(d));
-    } else {
-        known.iter().for_each(|d| println!("{:<20} {}", d.name, d.about));
+}
+
+/// Why a file is not sound.
+enum Trouble {
+    Rejected(Rejected),
+    Unreadable(String, &'static str),
+}
+
+impl Trouble {
+    /// Tells a person, or gives what a program is told.
+    fn tell(self, path: &Path, wanted: &Wanted<'_>) -> Vec<serde_json::Value> {
+        match self {
+            Trouble::Rejected(rejected) => {
+                if !wanted.json {
+                    paint::show(&rejected, wanted.color);
+                }
+                rejected.located().into_iter().map(|l| json!(l)).collect()
+            }
+            Trouble::Unreadable(message, help) => {
+                let file = path.display().to_string();
+                if !wanted.json {
+                    eprintln!("{file}: {message}; {help}");
+                }
+                vec![json!({
+                    "file": file, "line": 0, "column": 0, "rule": null, "message": message, "help": help,
+                })]
+            }
+        }
     }
+}
+
+fn read(path: &Path) -> Result<Source, Trouble> {
+    let bytes = std::fs::read(path).map_err(|e| {
+        let help = "expected the path of a creature file or a manifest (TOML)";
+        Trouble::Unreadable(format!("cannot be read: {e}"), help)
+    })?;
+    Source::from_bytes(path.display().to_string(), bytes).map_err(Trouble::Rejected)
+}
+
+/// The file at `path`: a creature file, or a manifest together with the creature it wants to join.
+fn given(path: &Path, wanted: &Wanted<'_>) -> Result<Given, Trouble> {
+    let source = read(path)?;
+    let host = match wanted.host {
+        Some(host) => Some(directory(read(host)?)?),
+        None => match host_beside(path, &source) {
+            Some(host) => Some(directory(read(&host)?)?),
+            None if wanted.manifests => {
+                let help = "name the creature file: subsumectl check --in CREATURE.toml FILE...";
+                let message = "no creature file lies beside this manifest";
+                return Err(Trouble::Unreadable(message.into(), help));
+            }
+            None => None,
+        },
+    };
+    Ok(Given { source, host })
+}
+
+fn directory(source: Source) -> Result<Directory, Trouble> {
+    let creature = checker::creature(&source, &kinds()).map_err(Trouble::Rejected)?;
+    Ok(Directory::of(&creature, &creature.name))
+}
+
+/// The creature that a manifest in the same folder wants to join: a file without a body, whose creature has
+/// its own file `<creature>.toml` with one there, is a manifest.
+fn host_beside(path: &Path, source: &Source) -> Option<PathBuf> {
+    let table: toml::Table = source.text.parse().ok()?;
+    let creature = table.get("creature")?.as_str()?;
+    if table.contains_key("body") {
+        return None;
+    }
+    let host = path.with_file_name(format!("{creature}.toml"));
+    let other: toml::Table = std::fs::read_to_string(&host).ok()?.parse().ok()?;
+    let same = std::fs::canonicalize(&host).ok()? == std::fs::canonicalize(path).ok()?;
+    (!same && other.contains_key("body")).then_some(host)
+}
+
+/// Prints the schema of creature files for editors.
+pub(crate) fn schema() -> ExitCode {
+    let schema = schema::schema(&kinds());
+    println!("{schema:#}");
     ExitCode::SUCCESS
-}
-
-fn describe(d: &Declaration) -> serde_json::Value {
-    let ports = |ports: &[Port]| {
-        let port = |p: &Port| json!({"name": p.name, "type": p.kind, "unit": p.unit, "about": p.about});
-        ports.iter().map(port).collect::<Vec<_>>()
-    };
-    let parameters: Vec<_> = d
-        .parameters
-        .iter()
-        .map(|p| json!({"name": p.name, "takes": takes(&p.takes), "unit": p.unit, "about": p.about}))
-        .collect();
-    json!({
-        "name": d.name, "about": d.about, "diagram": d.diagram,
-        "inputs": ports(d.inputs), "outputs": ports(d.outputs), "parameters": parameters,
-    })
-}
-
-fn explain(d: &Declaration) {
-    println!(
-        "{}: {}\n\n  {}\n",
-        d.name,
-        d.about,
-        d.diagram.replace('\n', "\n  ")
-    );
-    let ports = |what: &str, ports: &[Port]| {
-        for p in ports {
-            println!(
-                "  {what:<9} {:<12} {:<8} {:<6} {}",
-                p.name, p.kind, p.unit, p.about
-            );
-        }
-    };
-    ports("input", d.inputs);
-    ports("output", d.outputs);
-    for p in d.parameters {
-        println!(
-            "  {:<9} {:<12} {:<15} {}",
-            "parameter",
-            p.name,
-            format!("{} {}", takes(&p.takes), p.unit),
-            p.about
-        );
-    }
-}
-
-fn takes(takes: &Takes) -> String {
-    let default = |d: Option<String>| d.map_or("(must be given)".into(), |d| format!("= {d}"));
-    match takes {
-        Takes::Number { default: d, .. } => default(d.map(|n| n.to_string())),
-        Takes::Span { default: d } => default(d.map(|s| format!("{:?}", s.to_string()))),
-        Takes::Bit { default: d } => default(d.map(|b| b.to_string())),
-        Takes::Word { default: d, words } => format!("{} of {words:?}", default(d.map(|w| format!("{w:?}")))),
-        Takes::Numbers { default: d } => default(d.map(|n| format!("{n:?}"))),
-    }
 }

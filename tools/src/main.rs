@@ -1,10 +1,19 @@
 //! `subsumectl`: looks at a running creature, stops it, checks creature files.
 
 mod check;
+mod compete;
+mod doctor;
+mod example;
 mod live;
 mod manual;
+mod modules;
+mod new;
+mod paint;
+mod picture;
+mod prefixes;
 mod record;
 mod replay;
+mod test;
 mod top;
 mod watch;
 mod why;
@@ -27,8 +36,13 @@ use ipc::control::Request;
     subsumectl why body.forward           what the wheels are told, and why\n  \
     subsumectl halt; subsumectl reset     emergency stop, and its end\n  \
     subsumectl --creature jerry status    another instance\n  \
-    subsumectl check mine.toml            every error of a creature file\n\n\
-    Status: 0 done; 1 not done (no daemon, refused); 2 bad input."
+    subsumectl check mine.toml            every error of a creature file\n  \
+    subsumectl test scenarios/            what must come of a creature, on the virtual clock\n  \
+    subsumectl prefixes allen.toml --layers wander.toml --scenarios scenarios/\n  \
+    subsumectl new creature mine          a creature to start from\n  \
+    subsumectl graph mine.toml -o x.svg   a picture of it\n  \
+    subsumectl compete allen --rows 01    how well levels 0 and 1 do, over 20 simulated hours\n\n\
+    Status: 0 done; 1 not done (no daemon, refused, an expectation not met); 2 bad input."
 )]
 struct Options {
     /// The running creature to speak to; allen if not given
@@ -115,11 +129,20 @@ enum Command {
     Halt,
     /// Ends an emergency stop
     Reset,
-    /// Checks creature files and shows every error with its place
+    /// Checks creature files and manifests, and shows every error with its place
     Check {
-        /// Creature files
+        /// Creature files, and manifests of layers beside the file of their creature
         #[arg(required = true)]
         files: Vec<PathBuf>,
+        /// Checks the files as manifests of layers that join this creature
+        #[arg(long = "in", value_name = "CREATURE.toml")]
+        host: Option<PathBuf>,
+        /// Takes every file for a manifest
+        #[arg(long)]
+        manifest: bool,
+        /// When to use colours
+        #[arg(long, value_enum, default_value_t, value_name = "WHEN")]
+        color: paint::Color,
     },
     /// Prints completions for a shell
     #[command(after_help = "Examples:\n  \
@@ -138,13 +161,73 @@ enum Command {
         /// The folder; made if it is not there
         folder: PathBuf,
     },
+    /// Prints the JSON Schema of creature files, for editors
+    Schema,
+    /// Writes a folder to start from: a creature, or a layer in Rust
+    New {
+        #[command(subcommand)]
+        what: new::New,
+    },
+    /// Measures a creature level by level over many simulated hours, and prints the table
+    Compete(compete::Asked),
     /// Truckin': games, the whole grid, evolution of trucks
     Truckin(truckin::command::TruckinArgs),
     /// ADROIT: check, draw, run and change programs of releasing mechanisms
     Adroit(adroit::command::AdroitArgs),
+    /// Measures wake-ups, steps, period errors and ages under a load, alone or against cyclictest
+    Latency(latency::command::LatencyArgs),
+    /// What a beat costs as a creature grows: time, share of a processor, memory
+    Scale(latency::scale::ScaleArgs),
+    /// Whether this host can keep a period, and what to change where it can't
+    Doctor(doctor::DoctorArgs),
+    /// Draws a creature: layers stacked, wires, taps with their time constants; what is wrong in red
+    Graph {
+        /// The creature file, and manifests of layers that join it
+        #[arg(required = true, value_name = "FILE")]
+        files: Vec<PathBuf>,
+        /// More manifests of layers that join it
+        #[arg(long, num_args = 1.., value_name = "MANIFEST")]
+        layers: Vec<PathBuf>,
+        /// Graphviz text instead of SVG
+        #[arg(long)]
+        dot: bool,
+        /// Where to write; the terminal if not given
+        #[arg(short, long, value_name = "OUT")]
+        output: Option<PathBuf>,
+    },
+    /// Runs scenario files on the virtual clock
+    Test {
+        /// Scenario files, and folders of them
+        #[arg(required = true, value_name = "FILE-or-FOLDER")]
+        paths: Vec<PathBuf>,
+        /// Only scenarios with this in their path or title
+        #[arg(long, value_name = "TEXT")]
+        filter: Option<String>,
+        /// Steps the modules of a layer in another order each beat, by this seed
+        #[arg(long, value_name = "SEED")]
+        shuffle: Option<u64>,
+        /// Writes a report for continuous integration as well
+        #[arg(long, value_name = "FILE")]
+        junit: Option<PathBuf>,
+    },
+    /// Tries every prefix of a creature's stack: alone, and while the layers above come and go
+    Prefixes {
+        /// The creature file
+        #[arg(value_name = "CREATURE")]
+        file: PathBuf,
+        /// Manifests of layers that join it
+        #[arg(long, num_args = 1.., value_name = "MANIFEST")]
+        layers: Vec<PathBuf>,
+        /// Scenario files, and folders of them
+        #[arg(long, num_args = 1.., required = true, value_name = "FILE-or-FOLDER")]
+        scenarios: Vec<PathBuf>,
+        /// How often each competence is tried with layers above, each time with other moments
+        #[arg(long, default_value_t = 5, value_name = "N")]
+        seeds: u64,
+    },
     /// Lists the kinds of module, or explains one
     Modules {
-        /// A kind of module
+        /// A kind of module, such as threshold, or a group, such as allen
         name: Option<String>,
     },
 }
@@ -168,8 +251,14 @@ impl From<When> for why::When {
         }
     }
 }
+/// Counts what real-time threads allocate where this program has some (`latency`).
+#[global_allocator]
+static ALLOCATOR: daemon::alloc::Counting = daemon::alloc::Counting;
 
 fn main() -> ExitCode {
+    if let Some(status) = latency::workers::dispatch() {
+        return status;
+    }
     // A reader that leaves early, such as `head`, ends this program without a complaint.
     let gone = std::sync::Arc::new(std::sync::atomic::AtomicBool::new(true));
     let _ = signal_hook::flag::register_conditional_default(signal_hook::consts::SIGPIPE, gone);
@@ -207,10 +296,58 @@ fn main() -> ExitCode {
             "halted; `subsumectl reset` ends it",
         ),
         Command::Reset => live::order(creature, json, Request::Reset, "reset"),
-        Command::Check { files } => return check::check(&files, json),
+        Command::Check {
+            files,
+            host,
+            manifest,
+            color,
+        } => {
+            return check::check(&check::Wanted {
+                files: &files,
+                host: host.as_deref(),
+                manifests: manifest,
+                color,
+                json,
+            });
+        }
+        Command::Schema => return check::schema(),
+        Command::New { what } => return new::new(&what, json),
+        Command::Compete(asked) => return compete::compete(&asked, json),
         Command::Truckin(args) => return truckin::command::command(args),
         Command::Adroit(args) => return adroit::command::command(args),
-        Command::Modules { name } => return check::modules(name.as_deref(), json),
+        Command::Latency(args) => return latency::command::command(&args, json),
+        Command::Scale(args) => return latency::scale::command(&args, json),
+        Command::Doctor(args) => return doctor::doctor(&args, json),
+        Command::Graph {
+            mut files,
+            layers,
+            dot,
+            output,
+        } => {
+            files.extend(layers);
+            return picture::draw(&files, dot, output.as_deref(), json);
+        }
+        Command::Test {
+            paths,
+            filter,
+            shuffle,
+            junit,
+        } => {
+            return test::test(&test::Wanted {
+                paths: &paths,
+                filter: filter.as_deref(),
+                shuffle,
+                junit: junit.as_deref(),
+                json,
+            });
+        }
+        Command::Modules { name } => return modules::modules(name.as_deref(), json),
+        Command::Prefixes {
+            file,
+            layers,
+            scenarios,
+            seeds,
+        } => return prefixes::prefixes(&file, &layers, &scenarios, seeds, json),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,

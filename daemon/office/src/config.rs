@@ -3,6 +3,7 @@
 //! Plain data. Nothing here moves and nothing here draws a random number.
 
 use crate::Layout;
+use crate::camera::CameraModel;
 use crate::sonar::SonarModel;
 use serde::Serialize;
 
@@ -10,6 +11,8 @@ use serde::Serialize;
 pub const ROBOT_RADIUS_M: f64 = 0.20;
 /// Radius of a standing person seen from above, m: a shoulder breadth of 0.44 m.
 pub const PERSON_RADIUS_M: f64 = 0.22;
+/// Most robots that one office holds.
+pub const ROBOTS_MAX: usize = 4;
 /// Most people, attackers and placed ones together, that one office holds: a bound for the buffers.
 pub const PEOPLE_MAX: usize = 64;
 
@@ -22,8 +25,16 @@ pub struct Config {
     pub people: u32,
     /// People who walk straight at the robot, stand in its way, leave, and come back.
     pub attackers: u32,
+    /// People who put themselves where the robot has a wall behind it, and stay.
+    pub cornerers: u32,
+    /// People who stand about in groups of three and talk.
+    pub talkers: u32,
+    /// Doors and chairs.
+    pub fittings: FittingsModel,
     /// The robot's ring of sonars.
     pub sonar: SonarModel,
+    /// The robot's range camera.
+    pub camera: CameraModel,
     /// The robot's wheel odometry and compass.
     pub odometry: OdometryModel,
     /// The robot's base.
@@ -33,6 +44,8 @@ pub struct Config {
     /// Where the robot starts: x m, y m, heading rad (counter-clockwise from the x axis).
     /// `None` takes the layout's own start.
     pub start: Option<(f64, f64, f64)>,
+    /// Where further robots start, at most [`ROBOTS_MAX`] in all.
+    pub others: Vec<(f64, f64, f64)>,
 }
 
 impl Default for Config {
@@ -42,11 +55,37 @@ impl Default for Config {
             seed: 1,
             people: 6,
             attackers: 2,
+            cornerers: 0,
+            talkers: 0,
+            fittings: FittingsModel::default(),
             sonar: SonarModel::default(),
+            camera: CameraModel::default(),
             odometry: OdometryModel::default(),
             base: BaseModel::default(),
             layout: Layout::office(),
             start: None,
+            others: Vec::new(),
+        }
+    }
+}
+
+/// How often people change the office. All figures are our choice; nought means never.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FittingsModel {
+    /// Mean time that a door stands open, s.
+    pub door_open_s: f64,
+    /// Mean time that a door stays closed if nobody comes, s.
+    pub door_closed_s: f64,
+    /// Mean time between two moves of one chair, s.
+    pub chair_s: f64,
+}
+
+impl Default for FittingsModel {
+    fn default() -> Self {
+        FittingsModel {
+            door_open_s: 300.0,
+            door_closed_s: 40.0,
+            chair_s: 240.0,
         }
     }
 }

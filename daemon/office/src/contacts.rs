@@ -46,14 +46,16 @@ pub struct Contacts {
 /// Watches the gaps around the robot from step to step.
 pub(crate) struct Touch {
     pub(crate) contacts: Contacts,
-    /// For every thing and then every person: the last step in which it touched the robot.
+    /// For every thing and then every disc: the last step in which it touched the robot.
     touched: Vec<u64>,
+    /// Which disc it watches.
+    own: usize,
     people_from: usize,
     step: u64,
 }
 
 impl Touch {
-    pub(crate) fn new(things: usize, people_max: usize) -> Touch {
+    pub(crate) fn new(own: usize, things: usize, discs_max: usize) -> Touch {
         let recent = VecDeque::with_capacity(CONTACTS_KEPT_MAX);
         Touch {
             contacts: Contacts {
@@ -61,14 +63,14 @@ impl Touch {
                 caused: 0,
                 recent,
             },
-            touched: vec![0; things + people_max],
+            touched: vec![0; things + discs_max],
+            own,
             people_from: things,
             step: 1,
         }
     }
 
-    /// Looks at everything near the robot once a step. `discs[0]` is the robot's, followed by
-    /// those of the people with their `names`.
+    /// Looks at everything near the robot once a step; `names` are those of the discs.
     pub(crate) fn look(
         &mut self,
         time_s: f64,
@@ -78,18 +80,20 @@ impl Touch {
         names: &[Arc<str>],
     ) {
         self.step += 1;
-        let rim = discs[0];
+        let rim = discs[self.own];
         space.each_near(rim.at, rim.radius + PART_M, |near| {
             let approach = robot.approach(near.away * -1.0);
             let gap = near.distance - rim.radius;
             self.one(near.thing, gap, time_s, approach, || space.name(near.thing));
         });
-        for (person, disc) in discs[1..].iter().enumerate() {
+        let own = self.own;
+        for index in (0..discs.len()).filter(|&i| i != own) {
+            let disc = &discs[index];
             let gap = rim.gap(disc);
             if gap <= PART_M {
                 let approach = robot.approach((disc.at - rim.at).unit());
-                self.one(self.people_from + person, gap, time_s, approach, || {
-                    names[person].clone()
+                self.one(self.people_from + index, gap, time_s, approach, || {
+                    names[index].clone()
                 });
             }
         }

@@ -12,7 +12,7 @@ pub const BLOCKS_MAX: usize = 1024;
 /// Most way points in one layout.
 pub const PLACES_MAX: usize = 256;
 
-/// What a block is, for whoever draws it. All kinds stop the robot and echo alike.
+/// What a block is, for whoever draws it. All kinds stop the robot; what they answer depends on their surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Kind {
@@ -28,6 +28,43 @@ pub enum Kind {
     Cabinet,
     /// Anything else that stands on the floor.
     Box,
+    /// A sliding door: there while it is closed, in the wall while it is open.
+    Leaf,
+}
+
+/// What a block is faced with: it decides from which angles sound and light come back.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, serde::Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Surface {
+    /// Paint, wood, cloth.
+    #[default]
+    Plain,
+    /// Lacquer or metal: a mirror to sound from much steeper angles.
+    Polished,
+    /// As polished to sound; a camera sees it only now and then, and else what is behind it.
+    Glass,
+}
+
+/// A room or a stretch of corridor: a rectangle of the floor with a name, for those who count rooms.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Room {
+    /// Its name.
+    pub name: String,
+    /// Its edges, m.
+    pub west: f64,
+    /// m.
+    pub south: f64,
+    /// m.
+    pub east: f64,
+    /// m.
+    pub north: f64,
+}
+
+impl Room {
+    /// Whether (`x`, `y`) m lies in it.
+    pub fn holds(&self, x: f64, y: f64) -> bool {
+        (self.west..self.east).contains(&x) && (self.south..self.north).contains(&y)
+    }
 }
 
 /// A solid rectangle on the floor.
@@ -47,6 +84,8 @@ pub struct Block {
     pub depth: f64,
     /// Its own x axis, rad counter-clockwise from the x axis of the office.
     pub angle: f64,
+    /// What it is faced with.
+    pub surface: Surface,
 }
 
 /// A way point: somewhere a person may be headed.
@@ -86,7 +125,23 @@ pub struct Layout {
     pub blocks: Vec<Block>,
     /// Way points. Two of them are joined whenever a person can walk straight from one to the other.
     pub places: Vec<Place>,
+    /// Its rooms, in so far as they are told apart.
+    pub rooms: Vec<Room>,
 }
+
+/// The texts of ten generated offices, seeds 1 to 10, kept as they were drawn: `layouts/kept`.
+pub const KEPT: [&str; 10] = [
+    include_str!("../layouts/kept/1.toml"),
+    include_str!("../layouts/kept/2.toml"),
+    include_str!("../layouts/kept/3.toml"),
+    include_str!("../layouts/kept/4.toml"),
+    include_str!("../layouts/kept/5.toml"),
+    include_str!("../layouts/kept/6.toml"),
+    include_str!("../layouts/kept/7.toml"),
+    include_str!("../layouts/kept/8.toml"),
+    include_str!("../layouts/kept/9.toml"),
+    include_str!("../layouts/kept/10.toml"),
+];
 
 impl Layout {
     /// The standard office, 18 m by 12 m: a corridor with three rooms on either side, doors 1 m
@@ -95,6 +150,25 @@ impl Layout {
         match Layout::parse(include_str!("../layouts/office.toml")) {
             Ok(layout) => layout,
             Err(error) => panic!("the built-in office: {error}"),
+        }
+    }
+
+    /// One of the [`KEPT`] offices, numbered from 1: what layers are built in.
+    ///
+    /// # Panics
+    /// If there is none of that number.
+    pub fn kept(number: usize) -> Layout {
+        match Layout::parse(KEPT[number - 1]) {
+            Ok(layout) => layout,
+            Err(error) => panic!("kept office {number}: {error}"),
+        }
+    }
+
+    /// The office that the generator draws from `seed`: what layers are measured in.
+    pub fn generated(seed: u64) -> Layout {
+        match Layout::parse(&crate::generate(seed)) {
+            Ok(layout) => layout,
+            Err(error) => panic!("generated office {seed}: {error}"),
         }
     }
 
@@ -143,6 +217,7 @@ impl Layout {
             start,
             blocks: Vec::new(),
             places: Vec::new(),
+            rooms: Vec::new(),
         };
         let half = WALL_THICKNESS_M / 2.0;
         let (west, east, south, north) = (-half, width + half, -half, height + half);
@@ -175,6 +250,7 @@ impl Layout {
                     width: end - begin,
                     depth: WALL_THICKNESS_M,
                     angle: libm::atan2(uy, ux),
+                    surface: Surface::Plain,
                 });
             }
             begin = resume;
@@ -191,6 +267,7 @@ impl Layout {
             width: size.0,
             depth: size.1,
             angle,
+            surface: Surface::Plain,
         });
     }
 }

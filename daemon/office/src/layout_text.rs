@@ -10,6 +10,18 @@
 //! from = [3.0, 0.0]
 //! to = [3.0, 4.0]
 //! doors = [[2.0, 1.0]]           # middle of the opening from the wall's start, its width
+//! surface = "glass"              # plain, polished, glass; may be left out, here and for blocks
+//!
+//! [[leaf]]                       # a sliding door in an opening: people open it, time closes it
+//! name = "west door"
+//! at = [3.0, 2.0]
+//! width = 1.0
+//! turned = 90.0                  # degrees, may be left out
+//!
+//! [[room]]                       # for those who count rooms
+//! name = "west room"
+//! from = [0.0, 0.0]
+//! to = [3.0, 4.0]
 //!
 //! [[block]]
 //! name = "desk"
@@ -25,7 +37,7 @@
 //! ```
 
 use crate::config::ROBOT_RADIUS_M;
-use crate::layout::{BLOCKS_MAX, Door, Kind, Layout, PLACES_MAX, Place};
+use crate::layout::{BLOCKS_MAX, Door, Kind, Layout, PLACES_MAX, Place, Room, Surface, WALL_THICKNESS_M};
 use crate::plane::vec2;
 use crate::space::Space;
 use crate::ways::{WALK_RADIUS_M, Ways};
@@ -64,7 +76,11 @@ struct RawLayout {
     #[serde(default)]
     block: Vec<RawBlock>,
     #[serde(default)]
+    leaf: Vec<RawLeaf>,
+    #[serde(default)]
     place: Vec<RawPlace>,
+    #[serde(default)]
+    room: Vec<RawRoom>,
 }
 
 #[derive(Deserialize)]
@@ -75,6 +91,26 @@ struct RawWall {
     to: Spanned<[f64; 2]>,
     #[serde(default)]
     doors: Vec<Spanned<[f64; 2]>>,
+    #[serde(default)]
+    surface: Surface,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RawLeaf {
+    name: Spanned<String>,
+    at: Spanned<[f64; 2]>,
+    width: Spanned<f64>,
+    #[serde(default)]
+    turned: Option<Spanned<f64>>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RawRoom {
+    name: Spanned<String>,
+    from: Spanned<[f64; 2]>,
+    to: Spanned<[f64; 2]>,
 }
 
 #[derive(Deserialize)]
@@ -86,6 +122,8 @@ struct RawBlock {
     size: Spanned<[f64; 2]>,
     #[serde(default)]
     turned: Option<Spanned<f64>>,
+    #[serde(default)]
+    surface: Surface,
 }
 
 #[derive(Clone, Copy, Deserialize)]
@@ -148,7 +186,15 @@ fn build(raw: &RawLayout) -> Result<Layout, Refusal> {
     for block in &raw.block {
         add_block(&mut layout, block)?;
     }
-    let space = Space::new(&layout);
+    for leaf in &raw.leaf {
+        add_leaf(&mut layout, leaf)?;
+    }
+    for room in &raw.room {
+        add_room(&mut layout, room)?;
+    }
+    // The ways are those through open doors.
+    let mut space = Space::new(&layout);
+    space.open_all_leaves(&layout);
     let start = raw.start.get_ref();
     inside(&layout, &raw.start, [start[0], start[1]])?;
     if let Some(near) = space.nearest(vec2(start[0], start[1]), ROBOT_RADIUS_M) {
@@ -207,8 +253,67 @@ fn add_wall(layout: &mut Layout, raw: &RawWall) -> Result<(), Refusal> {
         free_from = at + width / 2.0;
         doors.push(Door { at, width });
     }
+    let first = layout.blocks.len();
     layout.wall(raw.name.get_ref(), (x0, y0), (x1, y1), &doors);
+    layout.blocks[first..]
+        .iter_mut()
+        .for_each(|piece| piece.surface = raw.surface);
     Ok(())
+}
+
+fn add_leaf(layout: &mut Layout, raw: &RawLeaf) -> Result<(), Refusal> {
+    new_name(layout, &raw.name)?;
+    inside(layout, &raw.at, *raw.at.get_ref())?;
+    let width = *raw.width.get_ref();
+    if !(0.3..=4.0).contains(&width) {
+        return refuse(raw.width.span(), "a door must be 0.3 to 4 m wide".into());
+    }
+    let turned = angle(raw.turned.as_ref())?;
+    let [x, y] = *raw.at.get_ref();
+    layout.block(
+        raw.name.get_ref(),
+        Kind::Leaf,
+        (x, y),
+        (width, WALL_THICKNESS_M),
+        turned,
+    );
+    Ok(())
+}
+
+fn add_room(layout: &mut Layout, raw: &RawRoom) -> Result<(), Refusal> {
+    inside(layout, &raw.from, *raw.from.get_ref())?;
+    inside(layout, &raw.to, *raw.to.get_ref())?;
+    let ([west, south], [east, north]) = (*raw.from.get_ref(), *raw.to.get_ref());
+    if west >= east || south >= north {
+        return refuse(
+            raw.to.span(),
+            "a room goes from its south-west to its north-east".into(),
+        );
+    }
+    let name = raw.name.get_ref().clone();
+    if layout.rooms.iter().any(|room| room.name == name) {
+        return refuse(raw.name.span(), format!("a second room named {name:?}"));
+    }
+    layout.rooms.push(Room {
+        name,
+        west,
+        south,
+        east,
+        north,
+    });
+    Ok(())
+}
+
+/// Degrees as written, in rad.
+fn angle(turned: Option<&Spanned<f64>>) -> Result<f64, Refusal> {
+    match turned {
+        Some(turned) if !turned.get_ref().is_finite() => refuse(
+            turned.span(),
+            "an angle must be a finite number of degrees".into(),
+        ),
+        Some(turned) => Ok(turned.get_ref().to_radians()),
+        None => Ok(0.0),
+    }
 }
 
 fn add_block(layout: &mut Layout, raw: &RawBlock) -> Result<(), Refusal> {
@@ -221,16 +326,7 @@ fn add_block(layout: &mut Layout, raw: &RawBlock) -> Result<(), Refusal> {
             "a block's side must be within 0.05 to 20 m".into(),
         );
     }
-    let turned = match &raw.turned {
-        Some(turned) if !turned.get_ref().is_finite() => {
-            return refuse(
-                turned.span(),
-                "an angle must be a finite number of degrees".into(),
-            );
-        }
-        Some(turned) => turned.get_ref().to_radians(),
-        None => 0.0,
-    };
+    let turned = angle(raw.turned.as_ref())?;
     let kind = match raw.kind {
         RawKind::Desk => Kind::Desk,
         RawKind::Table => Kind::Table,
@@ -240,6 +336,9 @@ fn add_block(layout: &mut Layout, raw: &RawBlock) -> Result<(), Refusal> {
     };
     let [x, y] = *raw.at.get_ref();
     layout.block(raw.name.get_ref(), kind, (x, y), (width, depth), turned);
+    if let Some(block) = layout.blocks.last_mut() {
+        block.surface = raw.surface;
+    }
     Ok(())
 }
 

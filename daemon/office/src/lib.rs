@@ -7,9 +7,10 @@
 //! ```text
 //!   Drive ──► robot ──► discs ◄── people ◄── ways        config    layout ◄── layout_text
 //!               │         │                                          │
-//!               │       space (rapier) ◄─────────────────────────────┘
+//!               │       space (rapier) ◄── fittings ◄────────────────┴── generator ◄── seed
 //!               ▼         │
 //!           odometry      ├──► sonar ──► twelve ranges
+//!                         ├──► camera ──► twelve free distances
 //!                         └──► contacts
 //! ```
 //!
@@ -26,9 +27,12 @@
 
 #![forbid(unsafe_code)]
 
+mod camera;
 mod config;
 mod contacts;
 mod discs;
+mod fittings;
+mod generator;
 mod layout;
 mod layout_text;
 mod noise;
@@ -41,11 +45,16 @@ mod space;
 mod view;
 mod ways;
 
+pub use camera::{CameraModel, STRIPS};
 pub use config::{
-    BaseModel, Config, Drive, OdometryModel, PEOPLE_MAX, PERSON_RADIUS_M, Pose, ROBOT_RADIUS_M,
+    BaseModel, Config, Drive, FittingsModel, OdometryModel, PEOPLE_MAX, PERSON_RADIUS_M, Pose,
+    ROBOT_RADIUS_M, ROBOTS_MAX,
 };
 pub use contacts::{CAUSED_ABOVE_M_S, CONTACTS_KEPT_MAX, Contact, Contacts};
-pub use layout::{BLOCKS_MAX, Block, Door, Kind, Layout, PLACES_MAX, Place, WALL_THICKNESS_M};
+pub use generator::generate;
+pub use layout::{
+    BLOCKS_MAX, Block, Door, KEPT, Kind, Layout, PLACES_MAX, Place, Room, Surface, WALL_THICKNESS_M,
+};
 pub use layout_text::LayoutError;
 pub use office::Office;
 pub use sonar::{SONARS, SonarModel};

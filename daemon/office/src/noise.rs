@@ -16,7 +16,16 @@ pub(crate) enum Use {
     Odometry = 2,
     /// Where people go and how fast.
     People = 3,
+    /// When doors open and close, where chairs are put.
+    Fittings = 4,
+    /// What a generated layout looks like.
+    Layout = 6,
+    /// Noise of the range camera.
+    Camera = 5,
 }
+
+/// How many uses there may be for each robot: its streams begin at a multiple of this.
+const USES_MAX: u64 = 16;
 
 /// One stream of random draws.
 #[derive(Clone)]
@@ -24,10 +33,15 @@ pub(crate) struct Noise(Pcg32);
 
 impl Noise {
     pub(crate) fn new(seed: u64, purpose: Use) -> Self {
+        Noise::of(seed, purpose, 0)
+    }
+
+    /// The stream of the `robot`-th robot.
+    pub(crate) fn of(seed: u64, purpose: Use, robot: usize) -> Self {
         // A multiplication by an odd constant (2^64 divided by the golden ratio) parts small seeds.
         Noise(Pcg32::new(
             seed.wrapping_mul(0x9E37_79B9_7F4A_7C15),
-            purpose as u64,
+            purpose as u64 + USES_MAX * robot as u64,
         ))
     }
 

@@ -1,5 +1,5 @@
-//! The solid, unmoving part of the office, held by rapier: what a ray hits, what is near, what is
-//! in a disc's way.
+//! The solid part of the office, held by rapier: what a ray hits, what is near, what is in a disc's
+//! way. Doors come and go, chairs are moved; nothing here does so by itself.
 //!
 //! Rapier's colliders, bounding-volume tree and shape queries are used; its bodies and its solver
 //! are not. Nothing in the office is light enough to be pushed by a robot of this size, so all that
@@ -8,7 +8,7 @@
 //!
 //! Rapier computes in f32: positions in an office are exact to some micrometres.
 
-use crate::layout::Layout;
+use crate::layout::{Block, Kind, Layout, Surface};
 use crate::plane::{Vec2, vec2};
 use rapier2d::parry::bounding_volume::{Aabb, BoundingVolume};
 use rapier2d::parry::partitioning::{Bvh, BvhBuildStrategy};
@@ -25,6 +25,8 @@ pub(crate) struct Hit {
     pub(crate) distance: f64,
     /// The surface's unit normal.
     pub(crate) normal: Vec2,
+    /// What it is faced with.
+    pub(crate) surface: Surface,
 }
 
 /// Something solid close to a point.
@@ -45,6 +47,13 @@ pub(crate) struct Space {
     /// The thing that each collider, by its index, is a piece of.
     thing_of: Vec<usize>,
     names: Vec<Arc<str>>,
+    /// What each collider is faced with.
+    surfaces: Vec<Surface>,
+    /// Whether each collider is there: an open door is not.
+    there: Vec<bool>,
+    /// The four corners of each block, whether it is there or not.
+    edges: Vec<[Vec2; 4]>,
+    /// Every corner that is open to the air.
     corners: Vec<Vec2>,
 }
 
@@ -56,6 +65,19 @@ fn to_f64(v: Vector) -> Vec2 {
     vec2(f64::from(v.x), f64::from(v.y))
 }
 
+fn pose_of(block: &Block) -> Pose {
+    let turn = Vec2::at_angle(block.angle);
+    let rotation = rapier2d::math::Rotation::from_cos_sin_unchecked(turn.x as f32, turn.y as f32);
+    Pose::from_parts(to_f32(vec2(block.x, block.y)), rotation)
+}
+
+fn edges_of(block: &Block) -> [Vec2; 4] {
+    let centre = vec2(block.x, block.y);
+    let along = Vec2::at_angle(block.angle) * (block.width / 2.0);
+    let across = Vec2::at_angle(block.angle).left() * (block.depth / 2.0);
+    [(1.0, 1.0), (-1.0, 1.0), (-1.0, -1.0), (1.0, -1.0)].map(|(a, b)| centre + along * a + across * b)
+}
+
 impl Space {
     pub(crate) fn new(layout: &Layout) -> Space {
         let mut space = Space {
@@ -65,21 +87,14 @@ impl Space {
             dispatcher: DefaultQueryDispatcher,
             thing_of: Vec::new(),
             names: Vec::new(),
+            surfaces: Vec::new(),
+            there: Vec::new(),
+            edges: Vec::new(),
             corners: Vec::new(),
         };
-        let mut corners = Vec::new();
         for block in &layout.blocks {
-            let centre = vec2(block.x, block.y);
-            let along = Vec2::at_angle(block.angle) * (block.width / 2.0);
-            let across = Vec2::at_angle(block.angle).left() * (block.depth / 2.0);
-            for (a, b) in [(1.0, 1.0), (-1.0, 1.0), (-1.0, -1.0), (1.0, -1.0)] {
-                corners.push(centre + along * a + across * b);
-            }
-            let turn = Vec2::at_angle(block.angle);
-            let rotation = rapier2d::math::Rotation::from_cos_sin_unchecked(turn.x as f32, turn.y as f32);
-            let pose = Pose::from_parts(to_f32(centre), rotation);
-            let shape = ColliderBuilder::cuboid((block.width / 2.0) as f32, (block.depth / 2.0) as f32)
-                .position(pose);
+            let (half_width, half_depth) = ((block.width / 2.0) as f32, (block.depth / 2.0) as f32);
+            let shape = ColliderBuilder::cuboid(half_width, half_depth).position(pose_of(block));
             let (index, _) = space.colliders.insert(shape).into_raw_parts();
             assert_eq!(
                 index as usize,
@@ -92,21 +107,56 @@ impl Space {
                 space.names.push(block.name.as_str().into());
             }
             space.thing_of.push(thing);
+            space.surfaces.push(block.surface);
+            space.there.push(true);
+            space.edges.push(edges_of(block));
         }
-        let boxes = space
+        space.grow();
+        space
+    }
+
+    /// Builds the tree over what is there, and finds the corners that are open to the air.
+    fn grow(&mut self) {
+        let boxes = self
             .colliders
             .iter()
-            .map(|(handle, c)| (handle.into_raw_parts().0 as usize, c.compute_aabb()));
-        space.tree = Bvh::from_iter(BvhBuildStrategy::default(), boxes);
+            .map(|(handle, c)| (handle.into_raw_parts().0 as usize, c.compute_aabb()))
+            .filter(|(index, _)| self.there[*index]);
+        self.tree = Bvh::from_iter(BvhBuildStrategy::default(), boxes);
         // A corner buried in another block echoes nothing. One where two blocks meet stays: inner
         // corners send sound back where it came from.
+        let standing = self.edges.iter().zip(&self.there).filter(|(_, there)| **there);
+        let mut corners: Vec<Vec2> = standing.flat_map(|(edges, _)| *edges).collect();
         corners.retain(|&corner| {
-            space
-                .nearest(corner, 0.0)
+            self.nearest(corner, 0.0)
                 .is_none_or(|near| near.distance > -0.001)
         });
-        space.corners = corners;
-        space
+        self.corners = corners;
+    }
+
+    /// Puts block `index` where `block` says, or takes it away. Allocates: call it when a door or a
+    /// chair moves, not every step.
+    pub(crate) fn put(&mut self, index: usize, block: &Block, there: bool) {
+        let handle = ColliderHandle::from_raw_parts(index as u32, 0);
+        if let Some(collider) = self.colliders.get_mut(handle) {
+            collider.set_position(pose_of(block));
+        }
+        self.there[index] = there;
+        self.edges[index] = edges_of(block);
+        self.grow();
+    }
+
+    /// Opens every door.
+    pub(crate) fn open_all_leaves(&mut self, layout: &Layout) {
+        for (there, block) in self.there.iter_mut().zip(&layout.blocks) {
+            *there &= block.kind != Kind::Leaf;
+        }
+        self.grow();
+    }
+
+    /// Whether block `index` is there.
+    pub(crate) fn is_there(&self, index: usize) -> bool {
+        self.there[index]
     }
 
     fn query(&self) -> QueryPipeline<'_> {
@@ -135,10 +185,11 @@ impl Space {
     /// The first surface on the ray within `reach` m; `direction` is a unit vector.
     pub(crate) fn ray(&self, from: Vec2, direction: Vec2, reach: f64) -> Option<Hit> {
         let ray = Ray::new(to_f32(from), to_f32(direction));
-        let (_, hit) = self.query().cast_ray_and_get_normal(&ray, reach as f32, true)?;
+        let (collider, hit) = self.query().cast_ray_and_get_normal(&ray, reach as f32, true)?;
         Some(Hit {
             distance: f64::from(hit.time_of_impact),
             normal: to_f64(hit.normal),
+            surface: self.surfaces[collider.into_raw_parts().0 as usize],
         })
     }
 

@@ -7,7 +7,7 @@ use crate::layout::{Block, Place};
 use crate::sonar::SONARS;
 use serde::Serialize;
 
-/// What never moves: fetched once.
+/// Walls and furniture as they stand now: doors and chairs move, the rest never does.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct FloorPlan {
     /// The layout's name.
@@ -20,7 +20,7 @@ pub struct FloorPlan {
     pub robot_radius: f64,
     /// Radius of a person, m.
     pub person_radius: f64,
-    /// Walls and furniture.
+    /// Walls and furniture; open doors are not among them.
     pub blocks: Vec<Block>,
     /// Way points of the people.
     pub places: Vec<Place>,
@@ -34,6 +34,10 @@ pub enum PersonKind {
     Walker,
     /// Walks at the robot and stands in its way.
     Attacker,
+    /// Puts themselves where the robot has a wall behind it.
+    Cornerer,
+    /// Stands about with two others and talks.
+    Talker,
     /// Walks on a straight line, placed by a test.
     Scripted,
 }
@@ -62,6 +66,8 @@ pub struct View {
     pub odometry: Pose,
     /// The latest sonar readings, m from the rim; all zero before the first.
     pub sonar: [f64; SONARS],
+    /// The other robots.
+    pub robots: Vec<Pose>,
     /// Everybody in the office.
     pub people: Vec<PersonView>,
     /// Contacts of the robot with anything so far.

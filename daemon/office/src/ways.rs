@@ -87,6 +87,19 @@ impl Ways {
         self.next[from * self.places.len() + to]
     }
 
+    /// Whether a disc at `at` leaves every way between two places that are joined free to walk.
+    pub(crate) fn clear_of(&self, at: Vec2, radius: f64) -> bool {
+        let count = self.places.len();
+        (0..count).all(|from| {
+            (0..from).all(|to| {
+                let (a, b) = (self.places[from], self.places[to]);
+                // Only a way that is its own shortest is a straight one.
+                let straight = self.next[from * count + to] == to;
+                !straight || to_segment(at, a, b) > radius + WALK_RADIUS_M
+            })
+        })
+    }
+
     /// The place by which to join the net from `at` on the way to `goal` (or to nowhere in
     /// particular): the one with the shortest way that can be walked to straight, else the nearest.
     pub(crate) fn join(&self, space: &Space, at: Vec2, goal: Option<usize>) -> Option<usize> {
@@ -113,4 +126,11 @@ impl Ways {
         };
         (0..self.places.len()).min_by(nearest)
     }
+}
+
+/// m from `at` to the line from `a` to `b`.
+fn to_segment(at: Vec2, a: Vec2, b: Vec2) -> f64 {
+    let (way, to) = (b - a, at - a);
+    let share = (to.dot(way) / way.dot(way).max(1e-12)).clamp(0.0, 1.0);
+    (to - way * share).length()
 }

@@ -111,7 +111,7 @@ fn referred(text: &str, marks: &[&str]) -> Vec<String> {
 #[test]
 fn nothing_is_loaded_from_elsewhere() {
     let (server, _) = start();
-    for path in ["/", "/style.css", "/main.js", "/wiring_draw.js"] {
+    for path in ["/", "/style.css", "/main.js", "/wiring.js"] {
         let answer = ask(&server, "GET", path, "");
         let text = body(&answer).replace("http://www.w3.org/", "");
         assert!(!text.contains("http:") && !text.contains("https:"), "{path}");

@@ -2,20 +2,27 @@
 //!
 //! A body is two things that meet in a [`link`]: the [`motor`](crate::motor) unit, which beats on a real-time
 //! thread and moves messages between the creature's wires and the link, and a [`World`], which may take
-//! its time: a simulation, or a driver.
+//! its time: a simulation, or a driver. The two ends lie in one process, or in two ([`process`], [`remote`]).
 //!
 //! ```text
-//!   wires ──► motor unit (limits, halt gate) ──► link ──► world ──► link ──► motor unit ──► wires
+//!   wires ──► motor unit (limits, halt gate) ──► link ──► (body gate) world ──► link ──► motor unit ──► wires
 //! ```
 //! Must never know a behaviour.
 
+pub mod gate;
+pub mod handover;
+pub mod link;
 pub mod office;
+pub mod process;
+pub mod remote;
+pub mod warehouse;
 
-use std::sync::Arc;
+use std::any::Any;
 
 use ipc::clock::{Span, Time};
-use ipc::wire::{Page, Reader, Writer};
 use ipc::wiring::{Declaration, Setting};
+
+pub use link::{MotorEnd, WorldEnd, link};
 
 /// A kind of body.
 #[derive(Clone, Copy, Debug)]
@@ -38,77 +45,54 @@ pub type Build = fn(&[Setting], u64, Option<Place>) -> Box<dyn World>;
 /// Where a scenario wants the body to start: x and y in metres, heading in radians.
 pub type Place = (f64, f64, f64);
 
-/// What a body lives in.
-pub trait World: Send {
+/// What a body lives in: what a simulation, or the driver of a real robot, implements.
+///
+/// Commands come out of the link gated: while the body's own halt gate is closed every motion command reads
+/// zero, so a world that obeys [`WorldEnd::motion`] each turn halts without doing anything for it.
+pub trait World: Send + Any {
     /// Lives for one period: obeys the newest commands, lets time pass, tells what the sensors say.
     fn tick(&mut self, now: Time, link: &mut WorldEnd);
 
+    /// Stops every actuator: the last thing that is asked before the process leaves.
+    fn halt(&mut self) {}
+
     /// How it looks now, for those who watch: see the page's `state`.
-    fn view(&self) -> serde_json::Value;
+    fn view(&self) -> serde_json::Value {
+        serde_json::Value::Null
+    }
 
     /// What does not change: see the page's `plan`.
-    fn floor(&self) -> serde_json::Value;
+    fn floor(&self) -> serde_json::Value {
+        serde_json::Value::Null
+    }
+}
 
+impl dyn World {
     /// As what it really is, for tests.
-    fn as_any(&mut self) -> &mut dyn std::any::Any;
+    pub fn as_any(&mut self) -> &mut dyn Any {
+        self
+    }
+}
+
+/// No world at all: commands move nothing, sensors say nothing.
+#[derive(Clone, Copy, Debug)]
+pub struct Nowhere;
+
+impl World for Nowhere {
+    fn tick(&mut self, _: Time, _: &mut WorldEnd) {}
 }
 
 /// Every kind of body built in.
-pub const BODIES: &[&BodyKind] = &[&office::KIND];
+pub const BODIES: &[&BodyKind] = &[&office::KIND, &warehouse::KIND];
 
 /// The kind called `name`.
 pub fn find(name: &str) -> Option<&'static BodyKind> {
     BODIES.iter().find(|k| k.declaration.name == name).copied()
 }
 
-/// The motor unit's end of a link.
-#[derive(Debug)]
-pub struct MotorEnd {
-    /// One for each input of the body: commands to the world.
-    pub commands: Vec<Writer>,
-    /// One for each output of the body: what the sensors say.
-    pub sensors: Vec<Reader>,
-}
-
-/// The world's end of a link.
-#[derive(Debug)]
-pub struct WorldEnd {
-    /// One for each input of the body.
-    pub commands: Vec<Reader>,
-    /// One for each output of the body.
-    pub sensors: Vec<Writer>,
-}
-
-/// A link between a motor unit and its world, in plain memory.
-pub fn link(declaration: &'static Declaration) -> (MotorEnd, WorldEnd) {
-    let (inputs, outputs) = (declaration.inputs, declaration.outputs);
-    let page: Arc<Page> = Page::in_memory(inputs.len() + outputs.len());
-    let writer = |i: usize, kind| page.writer(i, kind).expect("a fresh page has all its writers");
-    let reader = |i: usize, kind| page.reader(i, kind).expect("the page has this wire");
-    let n = inputs.len();
-    let motor = MotorEnd {
-        commands: inputs
-            .iter()
-            .enumerate()
-            .map(|(i, p)| writer(i, p.kind))
-            .collect(),
-        sensors: outputs
-            .iter()
-            .enumerate()
-            .map(|(i, p)| reader(n + i, p.kind))
-            .collect(),
-    };
-    let world = WorldEnd {
-        commands: inputs
-            .iter()
-            .enumerate()
-            .map(|(i, p)| reader(i, p.kind))
-            .collect(),
-        sensors: outputs
-            .iter()
-            .enumerate()
-            .map(|(i, p)| writer(n + i, p.kind))
-            .collect(),
-    };
-    (motor, world)
+/// One turn of a world: commands are looked at, then the clock; the gate decides, the world lives.
+pub fn turn(world: &mut dyn World, link: &mut WorldEnd, clock: impl FnOnce() -> Time) {
+    let now = link.begin(clock);
+    world.tick(now, link);
+    link.end();
 }

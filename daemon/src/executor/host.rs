@@ -2,14 +2,22 @@
 //!
 //! Must never change anything outside this process.
 
+use std::num::NonZeroU64;
+use std::time::Duration;
+
 use rustix::io::Errno;
 use rustix::mm::{MlockAllFlags, mlockall};
 use rustix::process::{Resource, Rlimit, getrlimit, setrlimit};
-use rustix::thread::{CapabilitySet, CpuSet, capabilities, sched_setaffinity};
-use thread_priority::{
-    RealtimeThreadSchedulePolicy, ScheduleParams, ThreadPriority, ThreadSchedulePolicy,
-    set_thread_priority_and_policy, thread_native_id,
+use rustix::thread::{
+    CapabilitySet, CpuSet, capabilities, sched_getaffinity, sched_setaffinity, set_current_timer_slack,
 };
+use thread_priority::{
+    DeadlineFlags, NormalThreadSchedulePolicy, RealtimeThreadSchedulePolicy, ScheduleParams, ThreadPriority,
+    ThreadSchedulePolicy, set_thread_priority_and_policy, thread_native_id, thread_schedule_policy,
+};
+
+use super::plan::{Plan, Schedule};
+use ipc::clock::Span;
 
 /// Longest a SCHED_FIFO thread may run without sleeping before the kernel ends the process: a runaway
 /// thread would otherwise own its processor for 95 % of every second, for good.
@@ -65,6 +73,70 @@ pub fn limit_runaway() {
     let _ = setrlimit(Resource::Rttime, limit);
 }
 
+/// Gives the calling thread what `plan` asks for; says what was refused.
+pub fn settle(plan: &Plan) -> Vec<Refusal> {
+    tighten_timers();
+    let bound = plan.cpu.map_or(Ok(()), bind);
+    let scheduled = match plan.schedule {
+        Schedule::Ordinary => Ok(()),
+        Schedule::Fifo(priority) => schedule_fifo(priority),
+        Schedule::Deadline { runtime, period } => schedule_deadline(runtime, period, plan.cpu.is_some()),
+    };
+    [bound, scheduled].into_iter().filter_map(Result::err).collect()
+}
+
+/// Timers of the calling thread ring as exactly as the host can: matters under the ordinary scheduler, whose
+/// timers may otherwise be 50 µs late on purpose.
+fn tighten_timers() {
+    // Cannot fail for the calling thread; if it did, beats would be 50 µs later in best effort.
+    let _ = set_current_timer_slack(NonZeroU64::new(1));
+}
+
+/// Puts the calling thread under the ordinary scheduler if it is not there: whoever starts the daemon under a
+/// real-time policy would otherwise hand it on to every helper thread.
+///
+/// # Errors
+/// The refusal.
+pub fn be_ordinary() -> Result<(), Refusal> {
+    let other = ThreadSchedulePolicy::Normal(NormalThreadSchedulePolicy::Other);
+    if thread_schedule_policy().is_ok_and(|policy| policy == other) {
+        return Ok(());
+    }
+    // 48 of 99 on the crate's scale is niceness 0, that of a process nobody was nice to.
+    let middle = ThreadPriority::from_posix(ScheduleParams { sched_priority: 48 });
+    set_thread_priority_and_policy(thread_native_id(), middle, other).map_err(|e| Refusal {
+        call: "sched_setscheduler(SCHED_OTHER)".into(),
+        errno: errno_of(&e),
+        grants: "start the daemon from a shell or unit that has no real-time policy".into(),
+    })
+}
+
+/// Puts the calling thread under SCHED_DEADLINE: `runtime` in every `period`.
+///
+/// # Errors
+/// The refusal, with what grants it.
+pub fn schedule_deadline(runtime: Span, period: Span, bound: bool) -> Result<(), Refusal> {
+    let priority = ThreadPriority::Deadline {
+        runtime: Duration::from_nanos(runtime.0),
+        deadline: Duration::from_nanos(period.0),
+        period: Duration::from_nanos(period.0),
+        flags: DeadlineFlags::RESET_ON_FORK,
+    };
+    let policy = ThreadSchedulePolicy::Realtime(RealtimeThreadSchedulePolicy::Deadline);
+    // Zero names the calling thread; a pthread's own number would not.
+    set_thread_priority_and_policy(0, priority, policy).map_err(|_| Refusal {
+        call: format!("sched_setattr(SCHED_DEADLINE, {runtime} in {period})"),
+        errno: name(Errno::from_io_error(&std::io::Error::last_os_error()).unwrap_or(Errno::PERM)),
+        grants: if bound {
+            "a thread with `cpu` cannot have SCHED_DEADLINE: leave `cpu` out, or use policy = \"fifo\"".into()
+        } else {
+            "granted by CAP_SYS_NICE while the sum of all reservations stays below 95 % of each processor \
+             (EBUSY: it does not), outside of cpusets that are not exclusive"
+                .into()
+        },
+    })
+}
+
 /// Puts the calling thread under SCHED_FIFO at `priority`.
 ///
 /// # Errors
@@ -76,14 +148,17 @@ pub fn schedule_fifo(priority: u8) -> Result<(), Refusal> {
     let fifo = ThreadSchedulePolicy::Realtime(RealtimeThreadSchedulePolicy::Fifo);
     set_thread_priority_and_policy(thread_native_id(), posix, fifo).map_err(|e| Refusal {
         call: format!("sched_setscheduler(SCHED_FIFO, {priority})"),
-        errno: match e {
-            thread_priority::Error::OS(code) => name(Errno::from_raw_os_error(code)),
-            other => format!("{other:?}"),
-        },
+        errno: errno_of(&e),
         grants: "granted by CAP_SYS_NICE, by LimitRTPRIO=99 in the unit, or by `ulimit -r 99`; also refused \
                  inside a cpu control group under RT_GROUP_SCHED, by RestrictRealtime= and in user namespaces"
             .into(),
     })
+}
+
+/// The processors that this process may run on, by the host's numbers.
+pub fn processors() -> Vec<usize> {
+    let set = sched_getaffinity(None).unwrap_or_else(|_| CpuSet::new());
+    (0..CpuSet::MAX_CPU).filter(|cpu| set.is_set(*cpu)).collect()
 }
 
 /// Binds the calling thread to processor `cpu`.
@@ -104,8 +179,17 @@ pub fn bind(cpu: usize) -> Result<(), Refusal> {
     })
 }
 
-fn name(errno: Errno) -> String {
+fn errno_of(e: &thread_priority::Error) -> String {
+    match e {
+        thread_priority::Error::OS(code) => name(Errno::from_raw_os_error(*code)),
+        other => format!("{other:?}"),
+    }
+}
+
+/// An errno by its name.
+pub fn name(errno: Errno) -> String {
     match errno {
+        Errno::BUSY => "EBUSY".into(),
         Errno::PERM => "EPERM".into(),
         Errno::NOMEM => "ENOMEM".into(),
         Errno::AGAIN => "EAGAIN".into(),

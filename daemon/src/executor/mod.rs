@@ -6,44 +6,70 @@
 //! Must never do anything on a beating thread, once it is sealed, but this: no allocation, no lock, no page
 //! fault, no system call other than the sleep.
 
+pub mod deadline;
 pub mod gauge;
 pub mod host;
+pub mod plan;
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::JoinHandle;
 
 use ipc::clock::{self, Span, Time};
-use ipc::wiring::creature::Overrun;
+use ipc::wiring::creature::Wake;
 use rtrb::{Consumer, Producer, RingBuffer};
 
 use crate::alloc;
 use crate::gate::Causes;
-use crate::motor::HaltChannel;
+use crate::halt::HaltChannel;
+use deadline::Pace;
 use gauge::{BeatGauge, SAMPLES_MAX, Sample};
-use host::Refusal;
+pub use host::Refusal;
+pub use plan::{Plan, Schedule};
 
-/// Something that beats.
+/// Something that beats: one or more members that step together.
 pub trait Beats: Send + 'static {
     /// One beat, due now.
     fn beat(&mut self, now: Time);
+
+    /// How long member `k` took in the last beat, where there are several; the whole beat if not known.
+    fn took(&self, _member: usize) -> Option<Span> {
+        None
+    }
 }
 
-/// How a thread beats.
-#[derive(Clone, Debug)]
-pub struct Plan {
-    /// The thread's name.
-    pub name: String,
-    /// Time between beats.
-    pub period: Span,
-    /// Where the beats lie within the period.
-    pub phase: Span,
-    /// SCHED_FIFO priority; none to stay with the ordinary scheduler.
-    pub priority: Option<u8>,
-    /// The processor it is bound to.
-    pub cpu: Option<usize>,
-    /// What happens when a beat runs over its period.
-    pub overrun: Overrun,
+/// Where the time comes from and how it is waited for; the host's clock, but for tests.
+trait Timing {
+    fn now(&mut self) -> Time;
+    fn wait(&mut self, due: Time, wake: Wake);
+}
+
+/// The host's monotonic clock.
+struct Host;
+
+impl Timing for Host {
+    fn now(&mut self) -> Time {
+        clock::monotonic()
+    }
+
+    /// Waits until `due`. Spinning is bounded by its lead: the clock runs on.
+    fn wait(&mut self, due: Time, wake: Wake) {
+        match wake {
+            Wake::Sleep => clock::sleep_until(due),
+            Wake::Spin(lead) => {
+                clock::sleep_until(due - lead);
+                while clock::monotonic() < due {
+                    std::hint::spin_loop();
+                }
+            }
+        }
+    }
+}
+
+/// What one member of a thread shows: its counters, and where its samples go.
+struct Face {
+    gauge: Arc<BeatGauge>,
+    samples: Producer<Sample>,
 }
 
 /// A thread that beats.
@@ -51,8 +77,8 @@ pub struct Plan {
 pub struct Beating {
     /// Its name.
     pub name: String,
-    /// Samples of its beats, to be drained by a watcher.
-    pub samples: Consumer<Sample>,
+    /// Samples of its members' beats, to be drained by a watcher.
+    pub samples: Vec<Consumer<Sample>>,
     /// Its kernel thread id.
     pub tid: i32,
     /// What the host refused it.
@@ -73,7 +99,8 @@ const STACK_BYTES: usize = 512 << 10;
 /// How much of it is touched before the first beat.
 const TOUCHED_BYTES: usize = 256 << 10;
 
-/// Starts a thread that beats until `stop`. Its first beat is the first of its grid after `begin`.
+/// Starts a thread that beats until `stop`, with one of `gauges` for each member of `beats`. Its first beat is
+/// the first of its grid after `begin`.
 ///
 /// # Errors
 /// When the host refuses the thread itself.
@@ -81,11 +108,11 @@ pub fn start(
     plan: Plan,
     begin: Time,
     mut beats: impl Beats,
-    gauge: Arc<BeatGauge>,
+    gauges: Vec<Arc<BeatGauge>>,
     halt: Arc<HaltChannel>,
     stop: Arc<AtomicBool>,
 ) -> std::io::Result<Beating> {
-    let (sample_in, samples) = RingBuffer::new(SAMPLES_MAX);
+    let (mut faces, samples): (Vec<Face>, Vec<Consumer<Sample>>) = gauges.into_iter().map(face).unzip();
     let (ready_in, ready) = std::sync::mpsc::channel();
     let name = plan.name.clone();
     let thread = std::thread::Builder::new()
@@ -93,11 +120,13 @@ pub fn start(
         .stack_size(STACK_BYTES)
         .spawn(move || {
             let tid = rustix::thread::gettid().as_raw_nonzero().get();
-            let _ = ready_in.send((tid, settle(&plan)));
+            let _ = ready_in.send((tid, host::settle(&plan)));
             drop(ready_in);
             touch_stack();
-            alloc::seal();
-            run(&plan, begin, &mut beats, &gauge, &halt, &stop, sample_in);
+            if plan.sealed {
+                alloc::seal();
+            }
+            run(&plan, begin, &mut beats, &mut faces, &halt, &stop, &mut Host);
             alloc::unseal();
         })?;
     let (tid, refusals) = ready
@@ -112,11 +141,9 @@ pub fn start(
     })
 }
 
-/// Asks the host for what the plan wants.
-fn settle(plan: &Plan) -> Vec<Refusal> {
-    let bound = plan.cpu.map_or(Ok(()), host::bind);
-    let scheduled = plan.priority.map_or(Ok(()), host::schedule_fifo);
-    [bound, scheduled].into_iter().filter_map(Result::err).collect()
+fn face(gauge: Arc<BeatGauge>) -> (Face, Consumer<Sample>) {
+    let (samples, out) = RingBuffer::new(SAMPLES_MAX);
+    (Face { gauge, samples }, out)
 }
 
 /// Touches the stack that the beats will use, so that no beat is the first to.
@@ -134,47 +161,39 @@ fn run(
     plan: &Plan,
     begin: Time,
     beats: &mut impl Beats,
-    gauge: &BeatGauge,
+    faces: &mut [Face],
     halt: &HaltChannel,
     stop: &AtomicBool,
-    mut samples: Producer<Sample>,
+    timing: &mut impl Timing,
 ) {
-    let mut due = begin + plan.phase;
+    let mut pace = Pace::new(begin + plan.phase, plan.period, plan.overrun);
     // Relaxed: whether it stops one beat earlier or later does not matter.
     while !stop.load(Ordering::Relaxed) {
-        clock::sleep_until(due);
-        let woke = clock::monotonic();
+        let due = pace.due();
+        timing.wait(due, plan.wake);
+        let woke = timing.now();
         beats.beat(woke);
-        let ended = clock::monotonic();
-        gauge.beat(ended);
-        let sample = Sample {
-            latency: woke.since(due),
-            step: ended.since(woke),
-        };
-        if samples.push(sample).is_err() {
-            gauge.lose_sample();
+        let ended = timing.now();
+        let verdict = pace.after(woke, ended);
+        let sound = pace.sound();
+        if verdict.halt {
+            halt.halt(Causes::OVERRUN);
         }
-        due = due + plan.period;
-        if ended > due {
-            due = after_overrun(plan, due, ended, gauge, halt);
+        for (member, face) in faces.iter_mut().enumerate() {
+            face.gauge.judged(ended, verdict, sound);
+            let sample = Sample {
+                due,
+                latency: woke.since(due),
+                step: beats.took(member).unwrap_or(ended.since(woke)),
+                response: ended.since(due),
+            };
+            if face.samples.push(sample).is_err() {
+                face.gauge.lose_sample();
+            }
         }
     }
 }
 
-/// Applies the overrun policy: the beat due at `due` could not begin before `ended`.
-fn after_overrun(plan: &Plan, due: Time, ended: Time, gauge: &BeatGauge, halt: &HaltChannel) -> Time {
-    let missed = ended.since(due).0.div_ceil(plan.period.0);
-    match plan.overrun {
-        Overrun::CatchUp => {
-            gauge.overrun(0);
-            due
-        }
-        Overrun::Skip | Overrun::Halt => {
-            gauge.overrun(missed);
-            if plan.overrun == Overrun::Halt {
-                halt.halt(Causes::OVERRUN);
-            }
-            due + Span(missed * plan.period.0)
-        }
-    }
-}
+#[cfg(test)]
+#[path = "policy_tests.rs"]
+mod tests;

@@ -72,7 +72,7 @@ pub fn record(
             Ok(item) => {
                 if wanted.ring.is_some() && halted.is_none() {
                     let causes = causes_of(&item).unwrap_or(last_causes);
-                    if causes.without(last_causes).has(KEPT) {
+                    if causes.without(last_causes).has(KEPT) && !causes.has(Causes::START) {
                         halted = Some(Instant::now());
                     }
                     last_causes = causes;

@@ -43,9 +43,15 @@ const FETCH: Duration = Duration::from_millis(10);
 const LOOK: Duration = Duration::from_millis(1);
 
 /// Causes of a halt after which the flight recorder keeps what it holds: not start, reflex and shutdown, which
-/// are everyday life.
-pub const KEPT: Causes =
-    Causes(Causes::STALE.0 | Causes::UNSOUND.0 | Causes::VITAL.0 | Causes::OVERRUN.0 | Causes::EMERGENCY.0);
+/// are everyday life. Until the creature has started, none counts: its body and commands are still to come.
+pub const KEPT: Causes = Causes::STALE
+    .with(Causes::UNSOUND)
+    .with(Causes::VITAL)
+    .with(Causes::OVERRUN)
+    .with(Causes::EMERGENCY)
+    .with(Causes::BODY)
+    .with(Causes::WATCHDOG)
+    .with(Causes::MEMORY);
 
 /// What is to be recorded without anybody asking.
 #[derive(Clone, Debug, Default)]
@@ -169,6 +175,11 @@ impl Recorder {
         (first, Heard { items, waiting })
     }
 
+    /// Nobody speaks any more: whoever listens ends.
+    pub(crate) fn end(&self) {
+        self.lock().listeners.clear();
+    }
+
     fn lock(&self) -> std::sync::MutexGuard<'_, State> {
         self.state.lock().expect("nobody panics holding the recorder")
     }
@@ -208,6 +219,7 @@ pub fn start(
         version: 0,
         attached: Vec::new(),
         halts: 0,
+        standing: Causes::START,
     };
     std::thread::Builder::new()
         .name("recorder".into())
@@ -223,6 +235,8 @@ struct Fetcher {
     version: u64,
     attached: Vec<Watched>,
     halts: u64,
+    /// What the gate was closed for at the last look.
+    standing: Causes,
 }
 
 /// An attached layer whose wires are looked at.
@@ -242,7 +256,7 @@ impl Fetcher {
             flight.wait();
         }
         // Recordings end when their listeners find nobody speaking.
-        self.shared.recorder.lock().listeners.clear();
+        self.shared.recorder.end();
     }
 
     fn turn(&mut self) {
@@ -253,14 +267,12 @@ impl Fetcher {
         items.sort_by_key(Item::time);
         self.shared.recorder.tell(&items);
         let Some(flight) = &mut self.flight else { return };
-        let causes = self.shared.halt.counts();
-        let kept = causes
-            .zip(Causes::all())
-            .filter(|(_, (cause, _))| KEPT.has(*cause));
-        let halts: u64 = kept.map(|((_, count), _)| count).sum();
-        if halts != self.halts {
-            self.halts = halts;
-            let standing = self.shared.halt.decided().0;
+        let counts = self.shared.halt.counts();
+        let kept = counts.iter().filter(|counted| KEPT.has(counted.cause));
+        let halts: u64 = kept.map(|counted| counted.count).sum();
+        let standing = self.shared.halt.decided().0;
+        let starting = standing.with(std::mem::replace(&mut self.standing, standing));
+        if halts != std::mem::replace(&mut self.halts, halts) && !starting.has(Causes::START) {
             flight.halted(now, Causes(standing.0 & KEPT.0));
         }
         flight.turn(now, &self.shared, || self.shared.recorder.lock().ring.snapshot());

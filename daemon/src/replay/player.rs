@@ -10,7 +10,7 @@ use afsm::assemble::{FiledTap, Wires, assemble, join};
 use afsm::layer::{Command, Hand, RunningLayer};
 use ipc::clock::{Span, Time};
 use ipc::message::{Kind, WORDS_MAX, Words};
-use ipc::wire::{Fate, Page, Reader, Register, TapEnd, TapGauge, Writer};
+use ipc::wire::{Fate, Page, Reader, Register, Room, TapEnd, TapGauge, Writer};
 use ipc::wiring::catalog;
 use ipc::wiring::creature::{BODY, Creature, How, Layer, PortName};
 use recording::Recording;
@@ -477,6 +477,7 @@ impl Player {
                 level: joined.level,
                 plug,
                 gauge: Arc::new(TapGauge::numbered(joined.tap)),
+                room: Room::full(),
             };
             let _ = hand.commands.push(match joined.how {
                 How::Suppress => Command::Suppress(joined.slot, end),

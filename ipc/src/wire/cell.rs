@@ -14,7 +14,7 @@
 
 use super::sync::{AtomicU64, Ordering, fence};
 use crate::clock::Time;
-use crate::message::{WORDS_MAX, Words};
+use crate::message::{Kind, WORDS_MAX, Words};
 
 /// Version of the layout of cells and pages in shared memory; changes whenever it does.
 pub const LAYOUT: u32 = 1;
@@ -46,6 +46,16 @@ pub struct Reading {
     pub words: Words,
 }
 
+/// What one try to read a cell came to.
+enum Attempt {
+    /// A whole message: its number and its stamp.
+    Whole(u64, Time),
+    /// Nothing was ever written.
+    Empty,
+    /// A writer was at it.
+    Disturbed,
+}
+
 impl Default for Cell {
     fn default() -> Self {
         Cell::new()
@@ -62,58 +72,124 @@ impl Cell {
         }
     }
 
-    /// Writes a message of `length` words. Only the wire's one writer may call this.
-    pub(crate) fn write(&self, stamp: Time, words: &Words, length: usize) {
+    /// Writes a message of `N` words. Only the wire's one writer may call this.
+    #[inline]
+    fn put<const N: usize>(&self, stamp: Time, words: &Words) {
         // Relaxed: only this thread writes the sequence.
         let sequence = self.sequence.load(Ordering::Relaxed);
         self.sequence.store(sequence | 1, Ordering::Relaxed);
-        // Pairs with the acquire fence of `read`: whoever sees a new word sees the odd sequence as well.
+        // Pairs with the acquire fence of `take`: whoever sees a new word sees the odd sequence as well.
         fence(Ordering::Release);
         self.stamp.store(stamp.0, Ordering::Relaxed);
-        for (cell, word) in self.words.iter().zip(words).take(length) {
+        for (cell, word) in self.words[..N].iter().zip(&words[..N]) {
             cell.store(word.to_bits(), Ordering::Relaxed);
         }
-        // Pairs with the acquire load of `read`: whoever sees the even sequence sees the words.
+        // Pairs with the acquire load of `take`: whoever sees the even sequence sees the words.
         self.sequence
             .store((sequence | 1).wrapping_add(1), Ordering::Release);
     }
 
+    /// Writes a message of `kind`. Only the wire's one writer may call this.
+    #[inline]
+    pub(crate) fn write(&self, stamp: Time, words: &Words, kind: Kind) {
+        // The lengths that there are, each as code of its own: most messages have one word.
+        if kind.single() {
+            return self.put::<1>(stamp, words);
+        }
+        match kind.words() {
+            0 => self.put::<0>(stamp, words),
+            2 => self.put::<2>(stamp, words),
+            3 => self.put::<3>(stamp, words),
+            _ => self.put::<WORDS_MAX>(stamp, words),
+        }
+    }
+
     /// How many messages were written so far, or `None` while one is being written.
     /// A cheap look whether [`Cell::read`] is worth it.
+    #[inline]
     pub fn number(&self) -> Option<u64> {
         // Acquire is not needed for a look; `read` orders itself.
         let sequence = self.sequence.load(Ordering::Relaxed);
         (sequence & 1 == 0).then_some(sequence / 2)
     }
 
-    /// The newest message of `length` words; `None` if there never was one, or if none could be read
-    /// whole in [`TRIES_MAX`] tries (the caller keeps what it had).
-    pub fn read(&self, length: usize) -> Option<Reading> {
-        for _ in 0..TRIES_MAX {
-            // Pairs with the release store that ends `write`.
-            let before = self.sequence.load(Ordering::Acquire);
-            if before == 0 {
-                return None;
-            }
-            if before & 1 == 1 {
-                super::sync::pause();
-                continue;
-            }
-            let stamp = Time(self.stamp.load(Ordering::Relaxed));
-            let mut words = [0.0; WORDS_MAX];
-            for (word, cell) in words.iter_mut().zip(&self.words).take(length) {
-                *word = f64::from_bits(cell.load(Ordering::Relaxed));
-            }
-            // Pairs with the release fence of `write`.
-            fence(Ordering::Acquire);
-            if self.sequence.load(Ordering::Relaxed) == before {
-                return Some(Reading {
-                    number: before / 2,
-                    stamp,
-                    words,
-                });
+    /// Whether the newest message may be another than number `seen`; the common answer, no, costs one load.
+    #[inline]
+    pub(crate) fn changed(&self, seen: u64) -> bool {
+        // Acquire is not needed for a look; `take` orders itself.
+        self.sequence.load(Ordering::Relaxed) != seen.wrapping_mul(2)
+    }
+
+    /// Takes the newest message's first `N` words into `words`, which stay as they were if there never was one
+    /// or if none could be read whole in [`TRIES_MAX`] tries; else its number and its stamp.
+    #[inline(always)]
+    fn take<const N: usize>(&self, words: &mut Words) -> Option<(u64, Time)> {
+        match self.attempt::<N>(words) {
+            Attempt::Whole(number, stamp) => Some((number, stamp)),
+            Attempt::Empty => None,
+            Attempt::Disturbed => self.retry::<N>(words),
+        }
+    }
+
+    /// The further tries of [`Cell::take`]: rare, so kept out of the way.
+    #[cold]
+    fn retry<const N: usize>(&self, words: &mut Words) -> Option<(u64, Time)> {
+        for _ in 1..TRIES_MAX {
+            super::sync::pause();
+            match self.attempt::<N>(words) {
+                Attempt::Whole(number, stamp) => return Some((number, stamp)),
+                Attempt::Empty => return None,
+                Attempt::Disturbed => {}
             }
         }
         None
+    }
+
+    #[inline(always)]
+    fn attempt<const N: usize>(&self, words: &mut Words) -> Attempt {
+        // Pairs with the release store that ends `put`.
+        let before = self.sequence.load(Ordering::Acquire);
+        if before == 0 {
+            return Attempt::Empty;
+        }
+        if before & 1 == 1 {
+            return Attempt::Disturbed;
+        }
+        let stamp = Time(self.stamp.load(Ordering::Relaxed));
+        let whole: [f64; N] = std::array::from_fn(|k| f64::from_bits(self.words[k].load(Ordering::Relaxed)));
+        // Pairs with the release fence of `put`.
+        fence(Ordering::Acquire);
+        if self.sequence.load(Ordering::Relaxed) != before {
+            return Attempt::Disturbed;
+        }
+        words[..N].copy_from_slice(&whole);
+        Attempt::Whole(before / 2, stamp)
+    }
+
+    /// As [`Cell::take`], for a message of `kind`.
+    #[inline(always)]
+    pub(crate) fn take_words(&self, kind: Kind, words: &mut Words) -> Option<(u64, Time)> {
+        match kind.single() {
+            true => self.take::<1>(words),
+            false => self.take_others(kind.words(), words),
+        }
+    }
+
+    /// Messages that are not one word long.
+    fn take_others(&self, length: usize, words: &mut Words) -> Option<(u64, Time)> {
+        match length {
+            0 => self.take::<0>(words),
+            2 => self.take::<2>(words),
+            3 => self.take::<3>(words),
+            _ => self.take::<WORDS_MAX>(words),
+        }
+    }
+
+    /// The newest message, of `kind`; `None` if there never was one, or if none could be read
+    /// whole in [`TRIES_MAX`] tries (the caller keeps what it had).
+    pub fn read(&self, kind: Kind) -> Option<Reading> {
+        let mut words = [0.0; WORDS_MAX];
+        let (number, stamp) = self.take_words(kind, &mut words)?;
+        Some(Reading { number, stamp, words })
     }
 }

@@ -11,6 +11,7 @@
 #![allow(unsafe_code)] // keeps a pointer into a sample that was sent
 
 use std::fmt;
+use std::os::unix::fs::PermissionsExt;
 use std::ptr::NonNull;
 use std::sync::Arc;
 use std::time::Duration;
@@ -35,6 +36,11 @@ pub const READERS_MAX: usize = 64;
 
 /// How long a newcomer waits for a page whose owner is alive.
 const ATTACH_WAIT: Duration = Duration::from_secs(2);
+
+/// How long a new owner waits for a former one to be cleaned up, and how often it looks. Measured: up to
+/// 272 ms when short of CPU.
+const OWN_WAIT: Duration = Duration::from_millis(500);
+const OWN_STEP: Duration = Duration::from_millis(10);
 
 // SAFETY: a cell is `repr(C)`, made of atomics, without pointers, and the same in every process built
 // for this layout; the type name carries the layout's version.
@@ -120,6 +126,11 @@ impl Domain {
             .signal_handling_mode(SignalHandlingMode::Disabled)
             .create::<Service>()
             .map_err(|e| ShareError::Refused(format!("creating an iceoryx2 node: {e}")))?;
+        // iceoryx2 makes everything else for this user alone, but its counter of nodes for all to write: whoever
+        // cut that short would end every process of the domain.
+        for counter in counters(&config) {
+            let _ = std::fs::set_permissions(counter, std::fs::Permissions::from_mode(0o600));
+        }
         let domain = Domain { node };
         domain.clean();
         Ok(domain)
@@ -144,15 +155,8 @@ impl Domain {
         if listed.is_err() || others {
             return;
         }
-        let prefix = config.global.prefix.to_string();
-        for entry in std::fs::read_dir("/dev/shm").into_iter().flatten().flatten() {
-            let name = entry.file_name().to_string_lossy().into_owned();
-            let ours = name
-                .strip_prefix(&prefix)
-                .and_then(|rest| rest.strip_suffix(COUNTER_SUFFIX));
-            if ours.is_some_and(|hash| hash.len() == 40 && hash.bytes().all(|b| b.is_ascii_hexdigit())) {
-                let _ = std::fs::remove_file(entry.path());
-            }
+        for counter in counters(&config) {
+            let _ = std::fs::remove_file(counter);
         }
     }
 
@@ -185,14 +189,27 @@ impl Domain {
                 other => ShareError::Refused(format!("creating the service {service_name}: {other}")),
             })?;
         let slots = wires.max(1);
-        let publisher = service
-            .publisher_builder()
-            .initial_max_slice_len(slots)
-            .create()
-            .map_err(|e| match e {
-                PublisherCreateError::ExceedsMaxSupportedPublishers => ShareError::Owned(name.into()),
-                other => ShareError::Refused(format!("creating a publisher on {service_name}: {other}")),
-            })?;
+        let mut patience = OWN_WAIT.as_millis() / OWN_STEP.as_millis();
+        let publisher = loop {
+            let builder = service.publisher_builder().initial_max_slice_len(slots);
+            match builder.create() {
+                Ok(publisher) => break publisher,
+                // A dead owner may just be under clean-up by another process.
+                Err(PublisherCreateError::ExceedsMaxSupportedPublishers) if patience > 0 => {
+                    patience -= 1;
+                    std::thread::sleep(OWN_STEP);
+                    self.clean();
+                }
+                Err(PublisherCreateError::ExceedsMaxSupportedPublishers) => {
+                    return Err(ShareError::Owned(name.into()));
+                }
+                Err(other) => {
+                    return Err(ShareError::Refused(format!(
+                        "creating a publisher on {service_name}: {other}"
+                    )));
+                }
+            }
+        };
         let sample = publisher
             .loan_slice_uninit(slots)
             .map_err(|e| ShareError::Refused(format!("loaning the page of {service_name}: {e}")))?;
@@ -252,6 +269,21 @@ impl Domain {
         }
         Err(ShareError::Silent(name.into()))
     }
+}
+
+/// The files in which iceoryx2 counts the nodes of a domain.
+fn counters(config: &Config) -> Vec<std::path::PathBuf> {
+    let prefix = config.global.prefix.to_string();
+    let is_counter = |name: &str| {
+        let rest = name.strip_prefix(&prefix);
+        let hash = rest.and_then(|rest| rest.strip_suffix(COUNTER_SUFFIX));
+        hash.is_some_and(|hash| hash.len() == 40 && hash.bytes().all(|b| b.is_ascii_hexdigit()))
+    };
+    let entries = std::fs::read_dir("/dev/shm").into_iter().flatten().flatten();
+    entries
+        .filter(|entry| is_counter(&entry.file_name().to_string_lossy()))
+        .map(|entry| entry.path())
+        .collect()
 }
 
 fn mapped(subscriber: Subscriber, sample: Sample) -> Arc<Page> {

@@ -7,14 +7,14 @@
 
 pub mod cell;
 pub mod iceoryx;
+pub mod joined;
 pub mod outlet;
 pub mod page;
 pub mod register;
-pub mod side_tap;
 mod sync;
 
 pub use cell::{LAYOUT, Reading};
+pub use joined::{AHEAD_MAX, Fate, Plug, Room, TAPS_MAX, TapCounts, TapEnd, TapGauge, TapLook, TapState};
 pub use outlet::{Outlet, OutputCounts};
 pub use page::{Page, Reader, WIRES_MAX, Writer};
 pub use register::{InputCounts, Limits, Register};
-pub use side_tap::{Fate, Plug, TAPS_MAX, TapCounts, TapEnd, TapGauge, TapLook, TapState};

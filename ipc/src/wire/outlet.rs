@@ -7,11 +7,13 @@
 //!                                          └─► dropped, counted
 //! ```
 
+use std::sync::Arc;
+
+use super::joined::{Joined, Plug, TapEnd, TapGauge, TapLook, TapState, join, release, sweep, window_of};
 use super::page::Writer;
-use super::side_tap::{Joined, Plug, TAPS_MAX, TapEnd, TapLook, TapState, join, release, sweep};
 use crate::clock::Time;
-use crate::message::{Kind, Words};
-use crate::tap;
+use crate::message::{Kind, Payload, WORDS_MAX, Words};
+use crate::tap::{self, Window};
 
 /// What was counted at one output.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -26,7 +28,10 @@ pub struct OutputCounts {
 #[derive(Debug)]
 pub struct Outlet {
     writer: Writer,
-    staged: Option<Words>,
+    /// Whether there is a message for the end of the beat.
+    staged: bool,
+    /// Its words, or those of the last one.
+    words: Words,
     taps: Vec<Joined>,
     counts: OutputCounts,
 }
@@ -36,13 +41,15 @@ impl Outlet {
     pub fn new(writer: Writer) -> Outlet {
         Outlet {
             writer,
-            staged: None,
-            taps: Vec::with_capacity(TAPS_MAX),
+            staged: false,
+            words: [0.0; WORDS_MAX],
+            taps: Vec::new(),
             counts: OutputCounts::default(),
         }
     }
 
-    /// Joins an inhibitor. Does not allocate. `Err` gives it back when [`TAPS_MAX`] stand there already.
+    /// Joins an inhibitor. Does not allocate if it brings [`Room::full`](super::Room::full). `Err` gives it back
+    /// when [`TAPS_MAX`](super::TAPS_MAX) stand there already.
     pub fn inhibit(&mut self, end: TapEnd) -> Result<(), TapEnd> {
         join(&mut self.taps, end)
     }
@@ -57,49 +64,94 @@ impl Outlet {
     /// # Panics
     /// When the module emits twice on one port in one step.
     pub fn stage(&mut self, words: Words) {
+        self.mark();
+        self.words = words;
+    }
+
+    /// Keeps the message for the end of the beat, as [`Outlet::stage`] does.
+    ///
+    /// # Panics
+    /// When the module emits twice on one port in one step.
+    #[inline]
+    pub fn emit<T: Payload>(&mut self, message: T) {
+        self.mark();
+        message.put(&mut self.words);
+    }
+
+    #[inline]
+    fn mark(&mut self) {
         assert!(
-            self.staged.is_none(),
+            !self.staged,
             "a module emits at most one message per output port per step"
         );
-        self.staged = Some(words);
+        self.staged = true;
+    }
+
+    /// Whether a message waits for the end of the beat.
+    pub fn is_staged(&self) -> bool {
+        self.staged
     }
 
     /// Writes the staged message, stamped `u`, unless an inhibitor's window holds. Says whether it wrote.
+    #[inline]
     pub fn commit(&mut self, u: Time, gone: impl FnMut(TapEnd)) -> bool {
-        let mut open = true;
         if !self.taps.is_empty() {
-            for tap in &mut self.taps {
-                tap.look(u, None);
-                if tap.fresh {
-                    tap.take_effect();
-                }
-            }
-            open = tap::emits(u, self.taps.iter().filter_map(|t| t.window));
-            if !open && self.staged.is_some() {
-                self.counts.inhibited += 1;
-                if let Some(tap) = self
-                    .taps
-                    .iter_mut()
-                    .rfind(|t| t.window.is_some_and(|w| w.holds(u)))
-                {
-                    tap.reject();
-                }
-            }
-            sweep(&mut self.taps, u, gone);
+            self.look(u, gone);
         }
-        let Some(words) = self.staged.take() else {
+        if !std::mem::take(&mut self.staged) || !self.open(u) {
             return false;
-        };
-        if open {
-            self.writer.write(u, &words);
-            self.counts.emitted += 1;
         }
-        open
+        self.writer.write(u, &self.words);
+        self.counts.emitted += 1;
+        true
     }
 
-    /// The message waiting for the end of the beat.
-    pub fn staged(&self) -> Option<&Words> {
-        self.staged.as_ref()
+    /// Writes a message at once, stamped `u`, as though the module had emitted it then, unless an inhibitor's
+    /// window holds. Says whether it wrote. What is staged stays so.
+    pub fn put(&mut self, u: Time, words: &Words, gone: impl FnMut(TapEnd)) -> bool {
+        self.look(u, gone);
+        if !self.open(u) {
+            return false;
+        }
+        self.writer.write(u, words);
+        self.counts.emitted += 1;
+        true
+    }
+
+    /// Takes in what the inhibitors say.
+    pub fn look(&mut self, now: Time, gone: impl FnMut(TapEnd)) {
+        if self.taps.is_empty() {
+            return;
+        }
+        for tap in &mut self.taps {
+            tap.look(now, None);
+            if tap.fresh {
+                tap.take_effect();
+            }
+        }
+        sweep(&mut self.taps, now, gone);
+    }
+
+    /// Whether a message may be written at `u`; counts the one that may not.
+    #[inline]
+    fn open(&mut self, u: Time) -> bool {
+        if self.taps.is_empty() || tap::emits(u, self.taps.iter().filter_map(|t| t.window)) {
+            return true;
+        }
+        self.counts.inhibited += 1;
+        if let Some(tap) = self
+            .taps
+            .iter_mut()
+            .rfind(|t| t.window.is_some_and(|w| w.holds(u)))
+        {
+            tap.reject();
+        }
+        false
+    }
+
+    /// The words of the message that waits for the end of the beat, or of the last one that did.
+    pub fn words(&self) -> &Words {
+        &self.words
     }
 
     /// The kind of message on the wire.
@@ -115,6 +167,12 @@ impl Outlet {
     /// What was counted so far.
     pub fn counts(&self) -> OutputCounts {
         self.counts
+    }
+
+    /// The window of the inhibitor that is counted at `gauge`; `None` if it is not joined here or said nothing
+    /// yet.
+    pub fn window_of(&self, gauge: &Arc<TapGauge>) -> Option<Window> {
+        window_of(&self.taps, gauge)
     }
 
     /// The inhibitors on this output, for those who watch.

@@ -146,14 +146,24 @@ unsafe impl Sync for Reader {}
 
 impl Writer {
     /// Writes a message. Wait-free: about as many stores as the message has words.
+    #[inline]
     pub fn write(&mut self, stamp: Time, words: &Words) {
         // SAFETY: `_page` keeps the cell mapped.
-        unsafe { self.cell.as_ref() }.write(stamp, words, self.kind.words());
+        unsafe { self.cell.as_ref() }.write(stamp, words, self.kind);
     }
 
     /// The kind of message on this wire.
     pub fn kind(&self) -> Kind {
         self.kind
+    }
+
+    /// A reading end of the same wire.
+    pub fn reader(&self) -> Reader {
+        Reader {
+            cell: self.cell,
+            kind: self.kind,
+            _page: self._page.clone(),
+        }
     }
 }
 
@@ -161,13 +171,34 @@ impl Reader {
     /// The newest message, if there ever was one and it could be read whole within the bounded tries.
     pub fn read(&self) -> Option<Reading> {
         // SAFETY: `_page` keeps the cell mapped.
-        unsafe { self.cell.as_ref() }.read(self.kind.words())
+        unsafe { self.cell.as_ref() }.read(self.kind)
     }
 
     /// How many messages were written so far; `None` while one is being written.
+    #[inline]
     pub fn number(&self) -> Option<u64> {
         // SAFETY: `_page` keeps the cell mapped.
         unsafe { self.cell.as_ref() }.number()
+    }
+
+    /// Whether the newest message may be another than number `seen`.
+    #[inline]
+    pub(super) fn changed(&self, seen: u64) -> bool {
+        // SAFETY: `_page` keeps the cell mapped.
+        unsafe { self.cell.as_ref() }.changed(seen)
+    }
+
+    /// Takes the newest message's words into `words` if it is not number `seen`; else, and where none could be
+    /// read whole, they stay as they were. Its number and stamp. The common answer, none, costs one load.
+    #[inline(always)]
+    pub(super) fn take_newer(&self, seen: u64, words: &mut Words) -> Option<(u64, Time)> {
+        // SAFETY: `_page` keeps the cell mapped.
+        let cell = unsafe { self.cell.as_ref() };
+        if !cell.changed(seen) {
+            return None;
+        }
+        let taken = cell.take_words(self.kind, words);
+        taken.filter(|(number, _)| *number != seen)
     }
 
     /// The newest message if it is not number `seen`. The common answer, none, costs one load.

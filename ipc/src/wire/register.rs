@@ -7,13 +7,15 @@
 //!   existing wire ──► (S level 1) ──► (S level 1, declared later) ──► (S level 2) ──► register ──► module
 //! ```
 
-use super::page::Reader;
-use super::side_tap::{
-    Fate, Joined, Plug, TAPS_MAX, TapEnd, TapLook, TapState, join, plausible, release, sweep,
+use std::sync::Arc;
+
+use super::joined::{
+    Fate, Joined, Plug, TapEnd, TapGauge, TapLook, TapState, join, plausible, release, sweep, window_of,
 };
+use super::page::Reader;
 use crate::clock::Time;
-use crate::message::{Kind, Words};
-use crate::tap;
+use crate::message::{Kind, WORDS_MAX, Words};
+use crate::tap::{self, Window};
 
 /// What an input port takes: kind and range of every number.
 #[derive(Clone, Copy, Debug)]
@@ -27,7 +29,12 @@ pub struct Limits {
 }
 
 impl Limits {
+    #[inline]
     pub(super) fn accept(&self, words: &Words) -> bool {
+        if self.kind == Kind::Number {
+            // The bounds are finite, so what is no number or infinite is not between them.
+            return (self.low..=self.high).contains(&words[0]);
+        }
         self.kind.accepts(words, self.low, self.high)
     }
 }
@@ -50,29 +57,51 @@ pub struct Register {
     wire: Option<Reader>,
     seen: u64,
     taps: Vec<Joined>,
-    held: Option<(Time, Words)>,
+    /// Whether a message is held.
+    holds: bool,
+    /// The message held, with its stamp.
+    held: (Time, Words),
+    /// Whether a message was delivered since the last gather.
+    pending: bool,
     arrived: bool,
     looked: Option<(u64, Fate)>,
     counts: InputCounts,
+    /// Where a message of the existing wire is looked at before it is let in.
+    incoming: Words,
+}
+
+/// A message that may be let in: the existing wire's, or that of the k-th tap.
+#[derive(Clone, Copy)]
+enum From {
+    Wire,
+    Tap(usize),
 }
 
 impl Register {
     /// A register for messages within `limits`, fed by `wire` if the port is connected.
     pub fn new(limits: Limits, wire: Option<Reader>) -> Register {
         Register {
-            limits,
+            limits: Limits {
+                low: limits.low.max(f64::MIN),
+                high: limits.high.min(f64::MAX),
+                ..limits
+            },
             wire,
             seen: 0,
-            taps: Vec::with_capacity(TAPS_MAX),
-            held: None,
+            taps: Vec::new(),
+            holds: false,
+            held: (Time::ZERO, [0.0; WORDS_MAX]),
+            pending: false,
             arrived: false,
             looked: None,
             counts: InputCounts::default(),
+            incoming: [0.0; WORDS_MAX],
         }
     }
 
     /// Joins a suppressor: after those of lower or equal level, before those of higher level. Does not
-    /// allocate. `Err` gives the tap back when [`TAPS_MAX`] stand there already.
+    /// allocate if the tap brings [`Room::full`](super::Room::full). `Err` gives the tap back when
+    /// [`TAPS_MAX`](super::TAPS_MAX) stand there already.
     pub fn suppress(&mut self, end: TapEnd) -> Result<(), TapEnd> {
         join(&mut self.taps, end)
     }
@@ -84,40 +113,66 @@ impl Register {
 
     /// Looks at the wire and the taps, once a beat, before the module steps. `gone` is handed each tap that
     /// has left for good, to be dropped on a thread that may.
+    #[inline]
     pub fn gather(&mut self, now: Time, gone: impl FnMut(TapEnd)) {
-        self.arrived = false;
-        self.looked = None;
-        let original = self.look(now);
+        self.look(now, gone);
+        self.arrived = std::mem::take(&mut self.pending);
+    }
+
+    /// Looks at the wire and the taps between two beats. What is delivered counts as arrived at the next
+    /// [`Register::gather`]. In real time nobody does this: messages that come faster than the beat
+    /// overwrite each other. On the virtual clock it lets every message meet the rules, not only the newest.
+    #[inline]
+    pub fn look(&mut self, now: Time, gone: impl FnMut(TapEnd)) {
+        let original = self.newest_original(now);
         if self.taps.is_empty() {
-            if let Some((stamp, words)) = original {
-                self.deliver(stamp, words);
+            if let Some(stamp) = original {
+                self.deliver(stamp, From::Wire);
             }
             return;
         }
+        let mut fresh = false;
         for tap in &mut self.taps {
             tap.look(now, Some(&self.limits));
+            fresh |= tap.fresh;
         }
-        let in_hindsight = self.rejected_in_hindsight();
-        if in_hindsight {
-            self.held = None;
-        }
-        let mut newest = None;
-        if let Some((stamp, words)) = original {
+        if fresh {
+            self.series(original);
+        } else if let Some(stamp) = original {
+            // No tap spoke: what it decides hangs on the windows alone.
             if self.passes_from(0, stamp) {
-                newest = Some((stamp, words));
+                self.deliver(stamp, From::Wire);
             } else {
                 self.counts.rejected += 1;
-                self.looked = self.looked.map(|(number, _)| (number, Fate::Rejected));
+                self.reject_looked();
+            }
+        }
+        sweep(&mut self.taps, now, gone);
+    }
+
+    /// A suppressor kept the existing wire's message out.
+    fn reject_looked(&mut self) {
+        self.looked = self.looked.map(|(number, _)| (number, Fate::Rejected));
+    }
+
+    /// Lets in the newest message of the series, in a beat in which at least one tap spoke. `original` is the
+    /// stamp of the existing wire's message, if one came.
+    fn series(&mut self, original: Option<Time>) {
+        let in_hindsight = self.rejected_in_hindsight();
+        if in_hindsight {
+            self.holds = false;
+        }
+        let mut newest = None;
+        if let Some(stamp) = original {
+            if self.passes_from(0, stamp) {
+                newest = Some((stamp, From::Wire));
+            } else {
+                self.counts.rejected += 1;
+                self.reject_looked();
             }
         }
         for k in 0..self.taps.len() {
-            let Joined {
-                fresh,
-                window: Some(window),
-                words,
-                ..
-            } = self.taps[k]
-            else {
+            let (fresh, Some(window)) = (self.taps[k].fresh, self.taps[k].window) else {
                 continue;
             };
             let passes = if fresh {
@@ -132,14 +187,13 @@ impl Register {
                     self.taps[k].take_effect();
                 }
                 if newest.is_none_or(|(stamp, _)| window.stamp >= stamp) {
-                    newest = Some((window.stamp, words));
+                    newest = Some((window.stamp, From::Tap(k)));
                 }
             }
         }
-        if let Some((stamp, words)) = newest {
-            self.deliver(stamp, words);
+        if let Some((stamp, from)) = newest {
+            self.deliver(stamp, from);
         }
-        sweep(&mut self.taps, now, gone);
     }
 
     /// Whether a tap's message that came in just now was written before the message held, and its window
@@ -147,9 +201,10 @@ impl Register {
     /// must not keep a message that its suppressor overrules for as long as the window is open; what it
     /// holds instead is the newest message of the taps.
     fn rejected_in_hindsight(&self) -> bool {
-        let Some((held, _)) = self.held else {
+        if !self.holds {
             return false;
-        };
+        }
+        let held = self.held.0;
         // A message of a tap that stands further along is not the lower tap's to reject.
         let from = self
             .taps
@@ -162,17 +217,20 @@ impl Register {
             .any(|t| t.fresh && t.window.is_some_and(|w| w.holds(held)))
     }
 
-    /// The newest message of the existing wire, if it was not seen before and is one.
-    fn look(&mut self, now: Time) -> Option<(Time, Words)> {
-        let reading = self.wire.as_ref()?.newer_than(self.seen)?;
-        self.seen = reading.number;
-        match plausible(reading.stamp, now) {
-            Some(stamp) if self.limits.accept(&reading.words) => {
-                self.looked = Some((reading.number, Fate::Delivered));
-                Some((stamp, reading.words))
+    /// The stamp of the existing wire's newest message, if it was not seen before and is one; its words are
+    /// then those incoming.
+    #[inline]
+    fn newest_original(&mut self, now: Time) -> Option<Time> {
+        self.looked = None;
+        let (number, stamp) = self.wire.as_ref()?.take_newer(self.seen, &mut self.incoming)?;
+        self.seen = number;
+        match plausible(stamp, now) {
+            Some(stamp) if self.limits.accept(&self.incoming) => {
+                self.looked = Some((number, Fate::Delivered));
+                Some(stamp)
             }
             _ => {
-                self.looked = Some((reading.number, Fate::Fault));
+                self.looked = Some((number, Fate::Fault));
                 self.counts.faults += 1;
                 None
             }
@@ -181,6 +239,7 @@ impl Register {
 
     /// Whether a message stamped `u` gets through the suppressors from the `first` on; counts it with the
     /// one that rejects it.
+    #[inline]
     fn passes_from(&mut self, first: usize, u: Time) -> bool {
         let above = &mut self.taps[first..];
         if tap::passes(u, above.iter().filter_map(|t| t.window)) {
@@ -192,22 +251,36 @@ impl Register {
         false
     }
 
-    fn deliver(&mut self, stamp: Time, words: Words) {
+    #[inline]
+    fn deliver(&mut self, stamp: Time, from: From) {
         self.counts.delivered += 1;
         // Writes of other threads may be seen out of order: what is older than the message held was
         // overwritten by it.
-        if self.held.is_none_or(|(held, _)| stamp >= held) {
-            self.held = Some((stamp, words));
-            self.arrived = true;
+        if self.holds && stamp < self.held.0 {
+            return;
         }
+        let words = match from {
+            From::Wire => &self.incoming,
+            From::Tap(k) => &self.taps[k].words,
+        };
+        if self.limits.kind.single() {
+            self.held.1[0] = words[0];
+        } else {
+            self.held.1 = *words;
+        }
+        self.held.0 = stamp;
+        self.holds = true;
+        self.pending = true;
     }
 
     /// The message held, with its stamp; `None` until the first was delivered.
+    #[inline]
     pub fn held(&self) -> Option<&(Time, Words)> {
-        self.held.as_ref()
+        self.holds.then_some(&self.held)
     }
 
     /// Whether a message was delivered at the last [`Register::gather`].
+    #[inline]
     pub fn arrived(&self) -> bool {
         self.arrived
     }
@@ -225,7 +298,8 @@ impl Register {
 
     /// Forgets the message held: what a reset line does.
     pub fn clear(&mut self) {
-        self.held = None;
+        self.holds = false;
+        self.pending = false;
         self.arrived = false;
     }
 
@@ -237,5 +311,10 @@ impl Register {
     /// The taps as they stand in series, for those who watch.
     pub fn taps(&self) -> impl Iterator<Item = TapState> {
         self.taps.iter().map(Joined::state)
+    }
+
+    /// The window of the tap that is counted at `gauge`; `None` if it is not joined here or said nothing yet.
+    pub fn window_of(&self, gauge: &Arc<TapGauge>) -> Option<Window> {
+        window_of(&self.taps, gauge)
     }
 }

@@ -73,6 +73,8 @@ pub enum Setting {
     Text(String),
     /// Some numbers.
     Numbers(Vec<f64>),
+    /// Some lengths of time.
+    Spans(Vec<Span>),
 }
 
 /// What a parameter takes, with its default.
@@ -89,7 +91,7 @@ pub enum Takes {
     },
     /// A time with a unit, longer than zero.
     Span {
-        /// Value when not given; must be given if `None`.
+        /// Value when not given; must be given if `None`. Zero, which nobody can give, stands for none.
         default: Option<Span>,
     },
     /// `true` or `false`.
@@ -104,10 +106,23 @@ pub enum Takes {
         /// Value when not given; must be given if `None`.
         default: Option<&'static str>,
     },
-    /// A list of numbers.
+    /// A list of up to `most` numbers, each from `low` to `high`.
     Numbers {
+        /// Smallest.
+        low: f64,
+        /// Largest.
+        high: f64,
+        /// How many there may be.
+        most: usize,
         /// Value when not given; must be given if `None`.
         default: Option<&'static [f64]>,
+    },
+    /// A list of up to `most` times with a unit; zero is one of them.
+    Spans {
+        /// How many there may be.
+        most: usize,
+        /// Value when not given; must be given if `None`.
+        default: Option<&'static [Span]>,
     },
 }
 
@@ -128,7 +143,8 @@ impl Takes {
             Takes::Span { default } => default.map(Setting::Span),
             Takes::Bit { default } => default.map(Setting::Bit),
             Takes::Word { default, .. } => default.map(|w| Setting::Text(w.into())),
-            Takes::Numbers { default } => default.map(|n| Setting::Numbers(n.into())),
+            Takes::Numbers { default, .. } => default.map(|n| Setting::Numbers(n.into())),
+            Takes::Spans { default, .. } => default.map(|s| Setting::Spans(s.into())),
         }
     }
 }

@@ -9,6 +9,18 @@ use crate::clock::Span;
 /// The name under which the body's ports appear on wires.
 pub const BODY: &str = "body";
 
+/// SCHED_FIFO priority of the motor unit; layers without a priority of their own get those below it. Above what
+/// ordinary programs choose, below the kernel's own threads at 99.
+pub const PRIORITY_MAX: u8 = 80;
+
+/// The priority of a layer that names none: the shorter its period among `periods` (sorted, each once), the
+/// higher (rate-monotonic).
+pub fn rate_monotonic(periods: &[Span], period: Span) -> u8 {
+    let rank = periods.partition_point(|p| *p < period);
+    let below = u8::try_from(rank).unwrap_or(u8::MAX).saturating_add(1);
+    PRIORITY_MAX.saturating_sub(below).max(1)
+}
+
 /// A checked creature.
 #[derive(Clone, Debug)]
 pub struct Creature {
@@ -24,6 +36,8 @@ pub struct Creature {
     pub halt: Halt,
     /// What processes outside may do.
     pub outsiders: Outsiders,
+    /// How its beats are scheduled.
+    pub executor: Executor,
 }
 
 /// The body and its motor unit.
@@ -56,6 +70,11 @@ pub struct Layer {
     pub overrun: Overrun,
     /// Whether the body halts when it misses its beats.
     pub vital: bool,
+    /// The group whose thread it shares; a thread of its own if none. Layers of one group have equal
+    /// period, phase, priority, processor and way of waking.
+    pub group: Option<String>,
+    /// How its thread waits for the beat.
+    pub wake: Wake,
     /// Its modules, in the order of the file.
     pub modules: Vec<Module>,
     /// Wires into its modules and into the body.
@@ -100,7 +119,7 @@ pub struct Wire {
 }
 
 /// Which way a tap acts.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum How {
     /// At an input port: replaces.
@@ -134,6 +153,38 @@ pub enum Overrun {
     Halt,
 }
 
+/// How a thread waits for its beat.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Wake {
+    /// Sleeps until the beat.
+    #[default]
+    Sleep,
+    /// Sleeps until this long before the beat and spins the rest: more even, for a share of a processor.
+    Spin(Span),
+}
+
+/// How beats are scheduled.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Executor {
+    /// The scheduler that is asked for.
+    pub policy: Policy,
+    /// Whether the creature runs on, marked as best effort, where the host grants no real-time scheduling;
+    /// if not, the start is refused there.
+    pub best_effort: bool,
+    /// Largest share of one processor, from 0 to 1, that layers may spend spinning.
+    pub spin_share_max: f64,
+}
+
+/// A real-time scheduler of the host.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Policy {
+    /// SCHED_FIFO: by priority.
+    #[default]
+    Fifo,
+    /// SCHED_DEADLINE: earliest deadline first, from the periods.
+    Deadline,
+}
+
 /// How the creature halts.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Halt {
@@ -143,17 +194,56 @@ pub struct Halt {
     pub hold: Span,
     /// How old a command to the body may be.
     pub stale: Span,
+    /// A hardware watchdog that is fed while all is well, an absolute path.
+    pub watchdog_device: Option<std::path::PathBuf>,
 }
 
-/// What processes outside the daemon may do; the same user is always required.
+/// What processes outside the daemon may do. Its own user may always plug in, others only if named here.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Outsiders {
+    /// Wires that may be read.
+    pub read: Reads,
     /// Ports that may be tapped: inputs may be suppressed, outputs inhibited.
     pub tap: Vec<PortName>,
+    /// Further users who may plug in.
+    pub users: Vec<Account>,
+    /// Groups whose members may plug in.
+    pub groups: Vec<Account>,
     /// Most layers attached at once.
     pub layers_max: usize,
     /// Highest level an attached layer may claim.
     pub level_max: u8,
+    /// Shortest time constant of an attached tap.
+    pub time_constant_min: Span,
     /// Longest time constant of an attached tap.
     pub time_constant_max: Span,
+    /// Most messages a second of an attached tap.
+    pub messages_max: u32,
+}
+
+/// The wires that outsiders may read.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Reads {
+    /// Every wire.
+    All,
+    /// Those of these outputs.
+    These(Vec<PortName>),
+}
+
+/// A user or a group of the host.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Account {
+    /// By name; whether the host knows it is seen when the daemon starts.
+    Name(String),
+    /// By number.
+    Id(u32),
+}
+
+impl std::fmt::Display for Account {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Account::Name(name) => f.write_str(name),
+            Account::Id(id) => write!(f, "{id}"),
+        }
+    }
 }

@@ -1,21 +1,37 @@
 //! Diagnostics: what is wrong with a file, where, and what was expected instead.
 //!
-//! Must never stop at the first error: a file is read to its end and every error is shown at once.
+//! Must never stop at the first error: a file is read to its end and every error is shown at once, up to a
+//! number that nobody would read anyway.
 
-use std::fmt::Write as _;
 use std::ops::Range;
 
 use serde::Serialize;
 
+use super::rule::Rule;
+
+/// Most errors of one file that are kept and shown; the rest are only counted.
+pub const FINDINGS_MAX: usize = 200;
+
+/// Most names that are compared with misspelt ones in one file: enough for every slip of a person, and a
+/// tenth of a second for a file made of nothing but slips.
+const COMPARISONS_MAX: usize = 100_000;
+
+/// Longest word for which a near one is looked for.
+const WORD_MAX: usize = 64;
+
 /// One error in a file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Diagnostic {
+    /// The rule that is broken; none in files of other grammars.
+    pub rule: Option<Rule>,
     /// The offending bytes.
     pub at: Range<usize>,
     /// What is wrong.
     pub message: String,
     /// What was expected, or what to do.
     pub help: String,
+    /// Another place that belongs to it, with what stands there.
+    pub also: Option<(Range<usize>, String)>,
 }
 
 /// A diagnostic with its place spelled out, as reports carry it.
@@ -27,13 +43,17 @@ pub struct Located {
     pub line: usize,
     /// Column in characters, counted from 1.
     pub column: usize,
+    /// The code of the rule that is broken.
+    pub rule: Option<Rule>,
     /// What is wrong.
     pub message: String,
     /// What was expected, or what to do.
     pub help: String,
+    /// Line and column of another place that belongs to it.
+    pub also: Option<(usize, usize)>,
 }
 
-/// A text with its name, and what was found wrong with it.
+/// A text with its name.
 #[derive(Clone, Debug)]
 pub struct Source {
     /// The file's name, as errors show it.
@@ -47,8 +67,10 @@ pub struct Source {
 pub struct Rejected {
     /// The file.
     pub source: Source,
-    /// Its errors, in the order of the file.
+    /// Its errors, in the order of the file; at most [`FINDINGS_MAX`].
     pub diagnostics: Vec<Diagnostic>,
+    /// How many more there were.
+    pub more: usize,
 }
 
 impl Source {
@@ -60,39 +82,42 @@ impl Source {
         }
     }
 
-    /// Line and column (both from 1, columns in characters) of a byte offset.
-    pub fn place(&self, offset: usize) -> (usize, usize) {
-        let offset = (0..=offset.min(self.text.len()))
-            .rev()
-            .find(|&o| self.text.is_char_boundary(o))
-            .unwrap_or(0);
-        let before = &self.text[..offset];
-        let line = before.matches('\n').count() + 1;
-        let start = before.rfind('\n').map_or(0, |n| n + 1);
-        (line, before[start..].chars().count() + 1)
+    /// The bytes of a file as text.
+    ///
+    /// # Errors
+    /// When they are not UTF-8, with the place of the first byte that is not.
+    pub fn from_bytes(name: impl Into<String>, bytes: Vec<u8>) -> Result<Source, Rejected> {
+        let name = name.into();
+        let error = match String::from_utf8(bytes) {
+            Ok(text) => return Ok(Source { name, text }),
+            Err(error) => error,
+        };
+        let valid = error.utf8_error().valid_up_to();
+        let bytes = error.into_bytes();
+        let message = format!("the byte {:#04x} is not text", bytes[valid]);
+        let text = String::from_utf8_lossy(&bytes).into_owned();
+        let mut findings = Findings::default();
+        let help = "expected a text file in UTF-8; save it again with that encoding";
+        findings.refuse(Rule::NotText, valid..valid + 1, message, help);
+        findings.into_result(&Source { name, text }, None)
     }
 
-    fn render(&self, diagnostic: &Diagnostic, out: &mut String) {
-        let (line, column) = self.place(diagnostic.at.start);
-        let text = self.text.lines().nth(line - 1).unwrap_or("");
-        let covered = self.text.get(diagnostic.at.clone()).unwrap_or("");
-        let wide = covered.lines().next().map_or(0, |l| l.chars().count());
-        let wide = wide.clamp(1, (text.chars().count() + 2).saturating_sub(column).max(1));
-        let margin = line.to_string().len();
-        // Keeps tabs, so that the underline stands below what it means.
-        let indent: String = text
-            .chars()
-            .take(column - 1)
-            .map(|c| if c == '\t' { '\t' } else { ' ' })
-            .collect();
-        let _ = writeln!(out, "error: {}", diagnostic.message);
-        let _ = writeln!(out, "{:margin$}--> {}:{line}:{column}", "", self.name);
-        let _ = writeln!(out, "{:margin$} |", "");
-        let _ = writeln!(out, "{line} | {text}");
-        let _ = writeln!(out, "{:margin$} | {indent}{}", "", "^".repeat(wide));
-        if !diagnostic.help.is_empty() {
-            let _ = writeln!(out, "{:margin$} = {}", "", diagnostic.help);
-        }
+    /// The last boundary between characters that is not after `offset`.
+    pub(super) fn boundary(&self, offset: usize) -> usize {
+        let offset = offset.min(self.text.len());
+        let near = (offset.saturating_sub(3)..=offset).rev();
+        near.into_iter()
+            .find(|o| self.text.is_char_boundary(*o))
+            .unwrap_or(0)
+    }
+
+    /// Line and column (both from 1, columns in characters) of a byte offset.
+    pub fn place(&self, offset: usize) -> (usize, usize) {
+        let offset = self.boundary(offset);
+        let before = &self.text[..offset];
+        let line = before.bytes().filter(|b| *b == b'\n').count() + 1;
+        let start = before.rfind('\n').map_or(0, |n| n + 1);
+        (line, before[start..].chars().count() + 1)
     }
 }
 
@@ -101,34 +126,22 @@ impl Rejected {
     pub fn located(&self) -> Vec<Located> {
         let place = |d: &Diagnostic| {
             let (line, column) = self.source.place(d.at.start);
-            let (message, help) = (d.message.clone(), d.help.clone());
             Located {
                 file: self.source.name.clone(),
                 line,
                 column,
-                message,
-                help,
+                rule: d.rule,
+                message: d.message.clone(),
+                help: d.help.clone(),
+                also: d.also.as_ref().map(|(at, _)| self.source.place(at.start)),
             }
         };
         self.diagnostics.iter().map(place).collect()
     }
-}
 
-impl std::fmt::Display for Rejected {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let mut out = String::new();
-        for diagnostic in &self.diagnostics {
-            self.source.render(diagnostic, &mut out);
-            out.push('\n');
-        }
-        let n = self.diagnostics.len();
-        let _ = write!(
-            out,
-            "{}: {n} error{}",
-            self.source.name,
-            if n == 1 { "" } else { "s" }
-        );
-        f.write_str(&out)
+    /// How many errors the file has.
+    pub fn count(&self) -> usize {
+        self.diagnostics.len() + self.more
     }
 }
 
@@ -136,21 +149,115 @@ impl std::error::Error for Rejected {}
 
 /// Collects errors while a file is read.
 #[derive(Debug, Default)]
-pub struct Findings(Vec<Diagnostic>);
+pub struct Findings {
+    list: Vec<Diagnostic>,
+    more: usize,
+    compared: usize,
+    lost: bool,
+    lost_lines: bool,
+}
 
 impl Findings {
-    /// Notes an error at `at`.
+    /// Notes an error at `at`, of a grammar whose rules have no codes.
     pub fn error(&mut self, at: Range<usize>, message: impl Into<String>, help: impl Into<String>) {
-        self.0.push(Diagnostic {
+        self.note(None, at, message.into(), help.into(), None);
+    }
+
+    /// Notes that `rule` is broken at `at`.
+    pub fn refuse(
+        &mut self,
+        rule: Rule,
+        at: Range<usize>,
+        message: impl Into<String>,
+        help: impl Into<String>,
+    ) {
+        self.note(Some(rule), at, message.into(), help.into(), None);
+    }
+
+    /// Notes that `rule` is broken at `at`, together with another place and what stands there.
+    pub fn refuse_both(
+        &mut self,
+        rule: Rule,
+        at: Range<usize>,
+        message: impl Into<String>,
+        help: impl Into<String>,
+        also: (Range<usize>, String),
+    ) {
+        self.note(Some(rule), at, message.into(), help.into(), Some(also));
+    }
+
+    fn note(
+        &mut self,
+        rule: Option<Rule>,
+        at: Range<usize>,
+        message: String,
+        help: String,
+        also: Option<(Range<usize>, String)>,
+    ) {
+        let new = Diagnostic {
+            rule,
             at,
-            message: message.into(),
-            help: help.into(),
-        });
+            message,
+            help,
+            also,
+        };
+        if self.list.len() >= FINDINGS_MAX {
+            self.more += 1;
+        } else if !self.list.contains(&new) {
+            self.list.push(new);
+        }
+    }
+
+    /// Notes that a wire or a tap could not be read: a module that seems to lack one may not.
+    pub fn lose_wire(&mut self) {
+        self.lost = true;
+    }
+
+    /// Notes that whole lines could not be read: whatever seems to be missing may stand in them.
+    pub fn lose_lines(&mut self) {
+        self.lost = true;
+        self.lost_lines = true;
+    }
+
+    /// Whether a wire or a tap may stand in what could not be read.
+    pub fn has_lost_wires(&self) -> bool {
+        self.lost
+    }
+
+    /// Whether anything may stand in what could not be read.
+    pub fn has_lost_lines(&self) -> bool {
+        self.lost_lines
+    }
+
+    /// How many errors were found so far.
+    pub fn count(&self) -> usize {
+        self.list.len() + self.more
     }
 
     /// Whether nothing was found wrong so far.
     pub fn is_clean(&self) -> bool {
-        self.0.is_empty()
+        self.list.is_empty()
+    }
+
+    /// `expected one of …` as [`one_of`] says it; stops looking for near names in a file full of slips.
+    pub fn one_of<'a>(
+        &mut self,
+        what: &str,
+        given: &str,
+        known: impl IntoIterator<Item = &'a str>,
+    ) -> String {
+        // An error that will not be shown needs no help.
+        if self.list.len() >= FINDINGS_MAX {
+            return String::new();
+        }
+        let known: Vec<&str> = known.into_iter().collect();
+        self.compared += known.len();
+        let given = if self.compared > COMPARISONS_MAX {
+            ""
+        } else {
+            given
+        };
+        one_of(what, given, known)
     }
 
     /// `value`, or every error found in `source`, in the order of the file.
@@ -159,17 +266,25 @@ impl Findings {
     /// When anything was noted.
     pub fn into_result<T>(mut self, source: &Source, value: Option<T>) -> Result<T, Rejected> {
         match value {
-            Some(value) if self.0.is_empty() => Ok(value),
+            Some(value) if self.list.is_empty() => Ok(value),
             _ => {
-                assert!(!self.0.is_empty(), "a file without a value has an error to show");
-                self.0.sort_by_key(|d| (d.at.start, d.at.end));
-                self.0.dedup();
+                assert!(
+                    !self.list.is_empty(),
+                    "a file without a value has an error to show"
+                );
+                self.list.sort_by_key(|d| (d.at.start, d.at.end));
                 Err(Rejected {
                     source: source.clone(),
-                    diagnostics: self.0,
+                    diagnostics: self.list,
+                    more: self.more,
                 })
             }
         }
+    }
+
+    /// Keeps only the errors that `keep` wants.
+    pub(super) fn retain(&mut self, keep: impl FnMut(&Diagnostic) -> bool) {
+        self.list.retain(keep);
     }
 }
 
@@ -179,14 +294,12 @@ pub fn one_of<'a>(what: &str, given: &str, known: impl IntoIterator<Item = &'a s
     if known.is_empty() {
         return format!("there is no {what} here");
     }
-    known.sort_by_cached_key(|k| (strsim::damerau_levenshtein(given, k), k.to_string()));
-    let near = strsim::damerau_levenshtein(given, known[0]) <= 1 + given.len() / 4;
-    let lead = if near {
-        format!("did you mean {:?}? ", known[0])
-    } else {
-        String::new()
-    };
     known.sort_unstable();
+    known.dedup();
+    let lead = nearest(given, &known).map_or(String::new(), |near| format!("did you mean {near:?}? "));
+    if let [only] = known.as_slice() {
+        return format!("{lead}expected {only:?}, the only {what} here");
+    }
     let shown = known
         .iter()
         .take(12)
@@ -200,4 +313,19 @@ pub fn one_of<'a>(what: &str, given: &str, known: impl IntoIterator<Item = &'a s
         String::new()
     };
     format!("{lead}expected one of the {what}s {shown}{more}")
+}
+
+/// The known name nearest to a misspelt one, if one is near enough to be meant.
+fn nearest<'k>(given: &str, known: &[&'k str]) -> Option<&'k str> {
+    if given.is_empty() || given.len() > WORD_MAX {
+        return None;
+    }
+    let given = given.to_lowercase();
+    let far = 1 + given.len() / 4;
+    let near = known
+        .iter()
+        .filter(|k| k.len().abs_diff(given.len()) <= far)
+        .map(|k| (strsim::osa_distance(&given, &k.to_lowercase()), *k))
+        .min()?;
+    (near.0 <= far).then_some(near.1)
 }

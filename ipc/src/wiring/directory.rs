@@ -4,7 +4,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::creature::{BODY, Creature, PortName};
+use super::creature::{BODY, Creature, PortName, Reads};
 use crate::clock::Span;
 use crate::message::Kind;
 
@@ -46,6 +46,15 @@ pub struct Directory {
     pub level_max: u8,
     /// Longest time constant of a tap, in nanoseconds.
     pub time_constant_max: Span,
+    /// Shortest time constant of a tap, in nanoseconds.
+    #[serde(default)]
+    pub time_constant_min: Span,
+    /// Most messages a second of a tap; none for no limit.
+    #[serde(default)]
+    pub messages_max: Option<u32>,
+    /// Outputs of the creature whose wires may be read; none for all.
+    #[serde(default)]
+    pub open_reads: Option<Vec<String>>,
 }
 
 impl Directory {
@@ -74,6 +83,12 @@ impl Directory {
             reflexes: creature.halt.reflexes.iter().map(PortName::to_string).collect(),
             level_max: creature.outsiders.level_max,
             time_constant_max: creature.outsiders.time_constant_max,
+            time_constant_min: creature.outsiders.time_constant_min,
+            messages_max: Some(creature.outsiders.messages_max),
+            open_reads: match &creature.outsiders.read {
+                Reads::All => None,
+                Reads::These(ports) => Some(ports.iter().map(PortName::to_string).collect()),
+            },
         }
     }
 

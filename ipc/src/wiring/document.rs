@@ -5,14 +5,13 @@
 use std::borrow::Cow;
 use std::ops::Range;
 
-use toml::Spanned;
-use toml::de::{DeTable, DeValue};
+pub use toml::Spanned;
+pub use toml::de::{DeTable, DeValue};
 
-use super::diagnostic::{Findings, Source, one_of};
+use super::diagnostic::{Findings, one_of};
+use super::rule::Rule;
+pub use super::syntax::{FILE_BYTES_MAX, parse};
 use crate::clock::Span;
-
-/// Longest file that is read; a creature of 10,000 modules has about 1 MiB.
-pub const FILE_BYTES_MAX: usize = 4 << 20;
 
 /// A value with its place.
 #[derive(Clone, Debug)]
@@ -21,28 +20,6 @@ pub struct Placed<T> {
     pub value: T,
     /// Where it stands.
     pub at: Range<usize>,
-}
-
-/// The root table of `source`; syntax errors go to `findings`.
-pub fn parse<'s>(source: &'s Source, findings: &mut Findings) -> Option<Spanned<DeTable<'s>>> {
-    if source.text.len() > FILE_BYTES_MAX {
-        findings.error(
-            0..0,
-            "the file is too long",
-            format!("expected at most {FILE_BYTES_MAX} bytes"),
-        );
-        return None;
-    }
-    let (table, errors) = DeTable::parse_recoverable(&source.text);
-    for error in &errors {
-        let at = error.span().unwrap_or(0..0);
-        findings.error(
-            at,
-            error.message().replace('\n', "; "),
-            "expected TOML (https://toml.io)",
-        );
-    }
-    Some(table)
 }
 
 /// A table being read: keys are taken out one by one, what is left at the end is unknown.
@@ -69,18 +46,43 @@ impl<'t, 's> Keys<'t, 's> {
         self.at.clone()
     }
 
+    /// What the table is called in errors.
+    pub fn what(&self) -> &str {
+        &self.what
+    }
+
+    /// Whether there are keys that were not asked for.
+    pub fn has_others(&self) -> bool {
+        self.table
+            .iter()
+            .any(|(k, _)| !self.known.contains(&k.get_ref().as_ref()))
+    }
+
     /// Whether `key` is given.
     pub fn has(&self, key: &str) -> bool {
-        self.table.iter().any(|(k, _)| k.get_ref() == key)
+        self.table.contains_key(key)
+    }
+
+    /// The value of `key`, which then still is not asked for.
+    pub fn get(&self, key: &str) -> Option<&'t Spanned<DeValue<'s>>> {
+        self.table.get(key)
+    }
+
+    /// Every key with its place and value, in the order of the file; all of them count as asked for.
+    pub fn all(self) -> impl Iterator<Item = (Placed<String>, &'t Spanned<DeValue<'s>>)> {
+        self.table.iter().map(|(key, value)| {
+            let placed = Placed {
+                value: key.get_ref().to_string(),
+                at: key.span(),
+            };
+            (placed, value)
+        })
     }
 
     /// The value of `key`.
     pub fn take(&mut self, key: &'static str) -> Option<&'t Spanned<DeValue<'s>>> {
         self.known.push(key);
-        self.table
-            .iter()
-            .find(|(k, _)| k.get_ref() == key)
-            .map(|(_, v)| v)
+        self.table.get(key)
     }
 
     /// The value of `key`, which must be there.
@@ -88,7 +90,7 @@ impl<'t, 's> Keys<'t, 's> {
         let found = self.take(key);
         if found.is_none() {
             let message = format!("{} has no {key:?}", self.what);
-            findings.error(self.at(), message, format!("add {key} = ..."));
+            findings.refuse(Rule::MissingKey, self.at(), message, format!("add {key} = ..."));
         }
         found
     }
@@ -97,12 +99,9 @@ impl<'t, 's> Keys<'t, 's> {
     pub fn finish(self, findings: &mut Findings) {
         for (key, _) in self.table {
             if !self.known.contains(&key.get_ref().as_ref()) {
-                let help = one_of("key", key.get_ref(), self.known.iter().copied());
-                findings.error(
-                    key.span(),
-                    format!("unknown key {:?} in {}", key.get_ref(), self.what),
-                    help,
-                );
+                let help = findings.one_of("key", key.get_ref(), self.known.iter().copied());
+                let message = format!("unknown key {:?} in {}", key.get_ref(), self.what);
+                findings.refuse(Rule::UnknownKey, key.span(), message, help);
             }
         }
     }
@@ -110,7 +109,12 @@ impl<'t, 's> Keys<'t, 's> {
 
 fn wrong(value: &Spanned<DeValue<'_>>, expected: &str, findings: &mut Findings) {
     let message = format!("{} found", a(value.get_ref().type_str()));
-    findings.error(value.span(), message, format!("expected {expected}"));
+    findings.refuse(
+        Rule::WrongType,
+        value.span(),
+        message,
+        format!("expected {expected}"),
+    );
 }
 
 fn a(noun: &str) -> String {
@@ -143,11 +147,15 @@ pub fn word(
     words: &[&str],
     findings: &mut Findings,
 ) -> Option<usize> {
-    let given = text(value, &one_of(what, "", words.iter().copied()), findings)?;
+    let plain = |help: String| help.replace(&format!("one of the {what}s "), "one of ");
+    let expected = plain(one_of(what, "", words.iter().copied()));
+    let expected = expected.strip_prefix("expected ").unwrap_or(&expected);
+    let given = text(value, expected, findings)?;
     let found = words.iter().position(|w| *w == given.value);
     if found.is_none() {
-        let help = one_of(what, &given.value, words.iter().copied());
-        findings.error(given.at, format!("unknown {what} {:?}", given.value), help);
+        let help = plain(findings.one_of(what, &given.value, words.iter().copied()));
+        let message = format!("unknown {what} {:?}", given.value);
+        findings.refuse(Rule::UnknownWord, given.at, message, help);
     }
     found
 }
@@ -160,7 +168,8 @@ pub fn whole(value: &Spanned<DeValue<'_>>, low: u64, high: u64, findings: &mut F
             Ok(n) if (low..=high).contains(&n) => Some(n),
             _ => {
                 let message = format!("{} is out of range", n.as_str());
-                findings.error(value.span(), message, format!("expected {expected}"));
+                let help = format!("expected {expected}");
+                findings.refuse(Rule::OutOfRange, value.span(), message, help);
                 None
             }
         },
@@ -179,21 +188,23 @@ pub fn number(value: &Spanned<DeValue<'_>>, low: f64, high: f64, findings: &mut 
             .map(|n| n as f64),
         DeValue::Float(n) => n.as_str().replace('_', "").parse::<f64>().ok(),
         _ => {
-            wrong(value, "a number", findings);
+            let expected = number_range(low, high);
+            wrong(
+                value,
+                expected.strip_prefix("expected ").unwrap_or("a number"),
+                findings,
+            );
             return None;
         }
     };
-    match parsed {
-        Some(n) if n.is_finite() && (low..=high).contains(&n) => Some(n),
-        _ => {
-            findings.error(
-                value.span(),
-                "the number is out of range",
-                number_range(low, high),
-            );
-            None
-        }
-    }
+    let (rule, what) = match parsed {
+        Some(n) if n.is_finite() && (low..=high).contains(&n) => return Some(n),
+        Some(n) if n.is_finite() => (Rule::OutOfRange, format!("{n} is out of range")),
+        Some(n) if n.is_nan() => (Rule::NotFinite, "this is not a number".into()),
+        _ => (Rule::NotFinite, "this number is infinite or too long".into()),
+    };
+    findings.refuse(rule, value.span(), what, number_range(low, high));
+    None
 }
 
 fn number_range(low: f64, high: f64) -> String {
@@ -221,14 +232,55 @@ pub fn span(value: &Spanned<DeValue<'_>>, positive: bool, findings: &mut Finding
     let given = text(value, "a time with a unit, such as \"20ms\"", findings)?;
     match Span::parse(&given.value) {
         Ok(Span::ZERO) if positive => {
-            findings.error(given.at, "the time is zero", "expected a time longer than zero");
+            let message = format!("{:?} is no time at all", given.value);
+            let help = "expected a time longer than zero, such as \"20ms\"";
+            findings.refuse(Rule::NotPositive, given.at, message, help);
             None
         }
         Ok(span) => Some(span),
-        Err(help) => {
-            findings.error(given.at, format!("{:?} is not a time", given.value), help);
+        Err(_) if negative(&given.value) => {
+            let message = format!("{:?} is negative", given.value);
+            let help = "expected a time longer than zero, such as \"20ms\"";
+            findings.refuse(Rule::NotPositive, given.at, message, help);
             None
         }
+        Err(help) => {
+            let message = format!("{:?} is not a time", given.value);
+            findings.refuse(Rule::BadTime, given.at, message, unit_help(&given.value, help));
+            None
+        }
+    }
+}
+
+/// Whether a text would be a time but for its sign.
+fn negative(text: &str) -> bool {
+    text.strip_prefix('-').is_some_and(|t| Span::parse(t).is_ok())
+}
+
+/// Help for units that people write and that are not taken.
+fn unit_help(given: &str, help: String) -> String {
+    let split = given.find(|c: char| c.is_alphabetic() || c == '\u{b5}');
+    let (number, unit) = given.split_at(split.unwrap_or(given.len()));
+    let number = number.trim();
+    if number.parse::<f64>().is_err() {
+        return help;
+    }
+    let instead = match unit.trim().to_lowercase().as_str() {
+        "" => return format!("the unit is missing: write \"{number}ms\" or \"{number}s\""),
+        "\u{b5}s" | "\u{3bc}s" | "usec" => "us",
+        "sec" | "secs" | "second" | "seconds" => "s",
+        "msec" | "millis" | "ms" => "ms",
+        "m" | "mins" | "minute" | "minutes" => "min",
+        "hz" => return format!("a period is a time, not a rate: {}", period_of(number)),
+        _ => return format!("{help}; the units are ns, us, ms, s and min"),
+    };
+    format!("did you mean \"{number}{instead}\"? the units are ns, us, ms, s and min")
+}
+
+fn period_of(rate: &str) -> String {
+    match rate.parse::<f64>().ok().and_then(|r| Span::from_seconds(1.0 / r)) {
+        Some(period) if period > Span::ZERO => format!("write \"{period}\""),
+        _ => "write it as a time, such as \"20ms\"".into(),
     }
 }
 
@@ -245,6 +297,22 @@ pub fn array<'t, 's>(
             Vec::new()
         }
     }
+}
+
+/// The elements of a list of at most `most` of `what`.
+pub fn list<'t, 's>(
+    value: &'t Spanned<DeValue<'s>>,
+    what: &str,
+    most: usize,
+    findings: &mut Findings,
+) -> Vec<&'t Spanned<DeValue<'s>>> {
+    let items = array(value, &format!("a list of {what}"), findings);
+    if items.len() > most {
+        let message = format!("the list has {} elements", items.len());
+        let help = format!("expected at most {most}");
+        findings.refuse(Rule::OutOfRange, value.span(), message, help);
+    }
+    items
 }
 
 /// A table.

@@ -9,7 +9,7 @@ use std::sync::Arc;
 
 use ipc::clock::{Span, Time};
 use ipc::message::{Kind, WORDS_MAX, Words};
-use ipc::wire::{Limits, Page, Register, TapEnd, TapGauge, Writer};
+use ipc::wire::{Limits, Page, Register, Room, TapEnd, TapGauge, Writer};
 
 use crate::model::Suppressor;
 
@@ -41,6 +41,7 @@ pub(crate) fn end(page: &Arc<Page>, wire: usize, tau: u64, level: u8, plug: u32)
         level,
         plug,
         gauge: Arc::default(),
+        room: Room::none(),
     }
 }
 

@@ -4,7 +4,7 @@
 
 use std::sync::Arc;
 
-use ipc::wire::{Outlet, Page, Reader, Register, TapEnd, TapGauge};
+use ipc::wire::{Outlet, Page, Reader, Register, Room, TapEnd, TapGauge};
 use ipc::wiring::creature::{How, Layer, PortName, Tap};
 use ipc::wiring::{Declaration, catalog};
 
@@ -108,6 +108,7 @@ pub fn join(
             level: filed.level,
             plug: 0,
             gauge: filed.gauge.clone(),
+            room: Room::none(),
         };
         place(end).expect("the checker keeps taps within their bound");
         any = true;

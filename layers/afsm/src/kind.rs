@@ -90,6 +90,14 @@ impl<'s> Settings<'s> {
         }
     }
 
+    /// Some lengths of time.
+    pub fn spans(&self, name: &str) -> &'s [Span] {
+        match self.get(name) {
+            Setting::Spans(s) => s,
+            other => panic!("{name:?} of {} is {other:?}", self.declaration.name),
+        }
+    }
+
     /// The seed of everything random in this module; differs from module to module.
     pub fn seed(&self) -> u64 {
         self.seed

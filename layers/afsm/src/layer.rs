@@ -11,6 +11,7 @@
 use std::ops::Range;
 
 use ipc::clock::Time;
+use ipc::message::Words;
 use ipc::wire::{Outlet, Register, TapEnd};
 use ipc::wiring::creature::How;
 use rtrb::{Consumer, Producer};
@@ -151,6 +152,12 @@ impl RunningLayer {
         (self.registers.len(), self.outlets.len())
     }
 
+    /// Puts every module back in its initial state and empties its registers: the layer begins anew.
+    pub fn restart(&mut self) {
+        self.seats.iter_mut().for_each(|seat| seat.machine.reset());
+        self.registers.iter_mut().for_each(Register::clear);
+    }
+
     /// How many modules there are.
     pub fn len(&self) -> usize {
         self.seats.len()
@@ -169,14 +176,59 @@ impl RunningLayer {
             .map(|s| s.machine.state())
     }
 
+    /// The n-th input's register: inputs count module by module as they were seated, reset lines included.
+    pub fn register(&self, input: usize) -> &Register {
+        &self.registers[input]
+    }
+
+    /// The n-th output's outlet: outputs count module by module as they were seated.
+    pub fn outlet(&self, output: usize) -> &Outlet {
+        &self.outlets[output]
+    }
+
+    /// How many outputs there are.
+    pub fn outputs(&self) -> usize {
+        self.outlets.len()
+    }
+
+    /// Takes up commands between two beats.
+    pub fn take_up(&mut self) {
+        while let Ok(command) = self.commands.pop() {
+            self.obey(command);
+        }
+    }
+
+    /// Looks at every register and tap between two beats; see [`Register::look`].
+    pub fn look(&mut self, now: Time) {
+        for register in &mut self.registers {
+            register.look(now, |end| give_back(&mut self.returned, end));
+        }
+        self.look_at_inhibitors(now);
+    }
+
+    /// Takes in what the inhibitors of every output say; see [`Outlet::look`].
+    pub fn look_at_inhibitors(&mut self, now: Time) {
+        for outlet in &mut self.outlets {
+            outlet.look(now, |end| give_back(&mut self.returned, end));
+        }
+    }
+
+    /// Writes a message on the n-th output at once, as though its module emitted it; see [`Outlet::put`].
+    pub fn put(&mut self, output: usize, now: Time, words: &Words) -> bool {
+        let outlet = &mut self.outlets[output];
+        let wrote = outlet.put(now, words, |end| give_back(&mut self.returned, end));
+        if let Some(tracer) = &mut self.tracer {
+            trace_outlet(tracer, output, outlet, Some((wrote, words)));
+        }
+        wrote
+    }
+
     /// First half of a beat: takes up commands, looks at every register, steps every module.
     pub fn step(&mut self, now: Time) {
         if let Some(tracer) = &mut self.tracer {
             tracer.begin(now);
         }
-        while let Ok(command) = self.commands.pop() {
-            self.obey(command);
-        }
+        self.take_up();
         for &index in &self.order {
             let Seat {
                 machine,
@@ -211,22 +263,25 @@ impl RunningLayer {
 
     /// Second half of a beat: writes what was emitted, stamped `now`, unless inhibited.
     pub fn commit(&mut self, now: Time) {
-        for (slot, outlet) in self.outlets.iter_mut().enumerate() {
-            let staged = outlet.staged().copied();
-            let wrote = outlet.commit(now, |end| give_back(&mut self.returned, end));
-            let Some(tracer) = &mut self.tracer else { continue };
-            outlet.tap_looks().for_each(|look| tracer.tap(&look));
-            match staged {
-                Some(words) if wrote => {
-                    tracer.wrote(slot, outlet.counts().emitted, &words[..outlet.kind().words()]);
-                }
-                Some(_) => tracer.dropped(slot),
-                None => {}
-            }
+        for output in 0..self.outlets.len() {
+            self.commit_one(output, now);
         }
         if let Some(tracer) = &mut self.tracer {
             tracer.end(now);
         }
+    }
+
+    /// Writes what was emitted on the n-th output, as [`RunningLayer::commit`] does on all of them. Says whether
+    /// it wrote.
+    pub fn commit_one(&mut self, output: usize, now: Time) -> bool {
+        let outlet = &mut self.outlets[output];
+        let staged = outlet.is_staged();
+        let wrote = outlet.commit(now, |end| give_back(&mut self.returned, end));
+        if let Some(tracer) = &mut self.tracer {
+            let words = *outlet.words();
+            trace_outlet(tracer, output, outlet, staged.then_some((wrote, &words)));
+        }
+        wrote
     }
 
     fn obey(&mut self, command: Command) {
@@ -269,6 +324,19 @@ pub fn trace_registers(tracer: &mut Tracer, registers: &[Register]) {
             tracer.saw(slot, number, fate);
         }
         register.tap_looks().for_each(|look| tracer.tap(&look));
+    }
+}
+
+/// Traces what an outlet's inhibitors said, and what became of its message, if it had one: whether it was written,
+/// and its words.
+fn trace_outlet(tracer: &mut Tracer, slot: usize, outlet: &Outlet, message: Option<(bool, &Words)>) {
+    outlet.tap_looks().for_each(|look| tracer.tap(&look));
+    match message {
+        Some((true, words)) => {
+            tracer.wrote(slot, outlet.counts().emitted, &words[..outlet.kind().words()]);
+        }
+        Some((false, _)) => tracer.dropped(slot),
+        None => {}
     }
 }
 

@@ -34,12 +34,14 @@ pub struct Beat<'b> {
 
 impl Beat<'_> {
     /// The time of this beat.
+    #[inline]
     pub fn now(&self) -> Time {
         self.now
     }
 
     /// The message that arrived since the last step, if one did. Asking is what makes a state look at an
     /// input; a message that arrives while nobody asks is ignored.
+    #[inline]
     pub fn arrived<T: Payload>(&self, port: In<T>) -> Option<T> {
         let register = &self.inputs[port.index];
         if register.arrived() {
@@ -50,11 +52,13 @@ impl Beat<'_> {
     }
 
     /// The newest message that ever arrived, however old.
+    #[inline]
     pub fn latest<T: Payload>(&self, port: In<T>) -> Option<T> {
         self.inputs[port.index].held().map(|(_, words)| T::unpack(words))
     }
 
     /// When the newest message was written to its wire.
+    #[inline]
     pub fn stamp<T: Payload>(&self, port: In<T>) -> Option<Time> {
         self.inputs[port.index].held().map(|(stamp, _)| *stamp)
     }
@@ -63,7 +67,8 @@ impl Beat<'_> {
     ///
     /// # Panics
     /// When the step emits twice on one port.
+    #[inline]
     pub fn emit<T: Payload>(&mut self, port: Out<T>, message: T) {
-        self.outputs[port.index].stage(message.pack());
+        self.outputs[port.index].emit(message);
     }
 }

@@ -305,7 +305,7 @@ fn attach(manifest: &Source, kinds: &Kinds, creature_name: &str) -> Result<Sessi
         }
         drop((owned, domain));
     });
-    let request = plug_request(&layer, &owner, outputs);
+    let request = plug_request(&layer, &owner, outputs, std::process::id());
     let neighbours = Neighbours {
         creature,
         own: page.clone(),
@@ -350,7 +350,13 @@ fn watch(connection: &Connection, gone: Arc<AtomicBool>) -> std::io::Result<()> 
     Ok(())
 }
 
-fn plug_request(layer: &ipc::wiring::creature::Layer, owner: &str, outputs: Vec<Listed>) -> Plug {
+/// What `layer` asks of the creature that it joins. It shares its `outputs` as `owner`, from process `pid`.
+pub fn plug_request(
+    layer: &ipc::wiring::creature::Layer,
+    owner: &str,
+    outputs: Vec<Listed>,
+    pid: u32,
+) -> Plug {
     let names = |ports: &[ipc::wiring::Port]| ports.iter().map(|p| p.name.to_string()).collect();
     let module = |m: &ipc::wiring::creature::Module| PlugModule {
         name: m.name.clone(),
@@ -368,7 +374,7 @@ fn plug_request(layer: &ipc::wiring::creature::Layer, owner: &str, outputs: Vec<
         layer: layer.name.clone(),
         level: layer.level,
         period: layer.period,
-        pid: std::process::id(),
+        pid,
         owner: owner.into(),
         outputs,
         modules: layer.modules.iter().map(module).collect(),

@@ -7,9 +7,12 @@
 //! ```
 //! A map is a second old before the next one comes, and a person crosses the reach of an arm in that time.
 //! What the map showed is therefore kept as *marks*, points of the floor; the robot is moved among them as
-//! odometry and compass say, plus the way it needs to stop; and a mark matters as soon as whoever stood there
-//! could by then, at a walking pace, have come to the front half of the robot. What touches the back was not
-//! driven into.
+//! odometry and compass say, plus the way it needs to stop at its present speed; and a mark matters as soon
+//! as whoever stood there could by then, at a walking pace, have come to the front half of the robot. A mark
+//! that was there in the map before is *resting*: who stands has to start before walking, and whoever may
+//! hide behind it is farther still. What touches the back was not driven into.
+//!
+//! So the robot is quick where there is room, and goes through a door by short advances, one for each map.
 use afsm::{Beat, In, Module, ModuleKind, Out, Settings};
 use ipc::clock::{Span, Time};
 use ipc::message::{Kind, Map, Pose, Pulse, SONARS};
@@ -44,16 +47,25 @@ static DECLARATION: Declaration = Declaration {
     outputs: &[Port::new("halt", Kind::Pulse, "do not drive forward")],
     parameters: &[
         number("radius", 0.2, "m", "radius of the robot"),
-        number("speed", 0.3, "m/s", "full speed of the robot"),
+        number("braking", 1.0, "m/s2", "how hard the robot brakes"),
         number("pace", 0.75, "m/s", "pace at which people walk into the robot"),
+        number("start", 2.0, "m/s2", "how fast people start to walk"),
         number("margin", 0.05, "m", "room to keep, for what the pose is off by"),
         Parameter {
-            name: "stop",
+            name: "latency",
             takes: Takes::Span {
-                default: Some(Span::millis(350)),
+                default: Some(Span::millis(60)),
             },
             unit: "",
-            about: "from a halt message to a robot that stands",
+            about: "from a halt message to brakes that grip: a beat of the layer, two of the motor unit",
+        },
+        Parameter {
+            name: "lost",
+            takes: Takes::Span {
+                default: Some(Span::millis(2600)),
+            },
+            unit: "",
+            about: "how long an echo that is heard no more stands: two maps, three losses in a row are rare",
         },
         Parameter {
             name: "blind",
@@ -83,10 +95,19 @@ const fn number(name: &'static str, default: f64, unit: &'static str, about: &'s
 const FAR_M: f64 = 2.2;
 /// Farther than anything within a second's reach: no echo.
 const NO_ECHO_M: f64 = 5.0;
+/// A sonar tells nothing nearer than six inches; what reads about that may as well touch, metres.
+const TOUCHING_M: f64 = 0.2;
 /// Radius of a person: half a shoulder breadth.
 const PERSON_M: f64 = 0.22;
 /// Backward per sideways from which on a mark lies behind: 30 degrees back from abeam.
 const BEHIND: f64 = 0.6;
+/// Nearer than this to where something was a map ago, metres, it is at rest: four sigma of a range, and what
+/// the pose is off by after a second.
+const RESTING_M: f64 = 0.15;
+/// How fast the measured speed follows the odometry, 1/s: over a tenth of a second its slip averages out.
+const FOLLOW: f64 = 10.0;
+/// What the measured speed may be off by, m/s: slip, and the speed gained before it shows.
+const SPEED_OFF_M_S: f64 = 0.04;
 /// Points that stand for the arc an echo can have come from: its ends and its middle.
 const ARC: [f64; 3] = [-HALF_CONE, 0.0, HALF_CONE];
 
@@ -97,6 +118,8 @@ struct Mark {
     arc: [Spot; 3],
     /// When it was heard.
     at: Time,
+    /// Whether it was there in the map before as well.
+    resting: bool,
 }
 
 type Marks = [Option<Mark>; SONARS];
@@ -111,11 +134,16 @@ enum State {
 
 struct Collide {
     state: State,
-    radius: f64,
+    /// Pose and time of the beat before, and the speed since, m/s.
+    before: Option<(Pose, Time)>,
     speed: f64,
+    radius: f64,
+    braking: f64,
     pace: f64,
+    start: f64,
     margin: f64,
-    stop: Span,
+    latency: Span,
+    lost: Span,
     blind: Span,
 }
 
@@ -124,10 +152,14 @@ impl Collide {
         Collide {
             state: State::Blind,
             radius: settings.number("radius"),
-            speed: settings.number("speed"),
+            before: None,
+            speed: 0.0,
+            braking: settings.number("braking").max(0.01),
             pace: settings.number("pace"),
+            start: settings.number("start").max(0.01),
             margin: settings.number("margin"),
-            stop: settings.span("stop"),
+            latency: settings.span("latency"),
+            lost: settings.span("lost"),
             blind: settings.span("blind"),
         }
     }
@@ -137,12 +169,14 @@ impl Collide {
         std::array::from_fn(|index| {
             let range = map.ranges[index];
             if range < FAR_M {
+                let range = if range < TOUCHING_M { 0.0 } else { range };
                 let middle = self.radius + range + PERSON_M;
                 let arc = ARC.map(|off| Spot::from(pose, middle, bearing(index) + off));
-                return Some(Mark { arc, at });
+                let resting = before.iter().flatten().any(|old| same_place(&old.arc, &arc));
+                return Some(Mark { arc, at, resting });
             }
             // An echo that was near a second ago and now is none was lost: the older one stands for it.
-            let lost = |mark: &&Mark| range > NO_ECHO_M && at.since(mark.at) < self.blind;
+            let lost = |mark: &&Mark| range > NO_ECHO_M && at.since(mark.at) < self.lost;
             let same_way = |mark: &&Mark| {
                 let seen = mark.arc[1].seen_from(pose);
                 let off = wrap(libm::atan2(seen.y, seen.x) - bearing(index));
@@ -152,20 +186,52 @@ impl Collide {
         })
     }
 
+    /// Takes in where the wheels think they are, and with it how fast the robot is.
+    fn follow(&mut self, pose: Pose, now: Time) {
+        if let Some((was, at)) = self.before {
+            let seconds = now.since(at).seconds();
+            if seconds <= 0.0 {
+                return;
+            }
+            let speed = libm::hypot(pose.x - was.x, pose.y - was.y) / seconds;
+            self.speed += (speed - self.speed) * (FOLLOW * seconds).min(1.0);
+        }
+        self.before = Some((pose, now));
+    }
+
+    /// How far somebody comes in `seconds`, metres, who walked or stood when the time began.
+    fn walked(&self, seconds: f64, resting: bool) -> f64 {
+        let starting = if resting { self.pace / self.start } else { 0.0 };
+        if seconds < starting {
+            self.start * seconds * seconds / 2.0
+        } else {
+            self.pace * (seconds - starting / 2.0)
+        }
+    }
+
     /// Whether the way ahead is barred at `now` for a robot at `pose`.
     fn barred(&self, marks: &Marks, pose: Pose, now: Time) -> bool {
+        let speed = self.speed + SPEED_OFF_M_S;
+        let stop = self.latency.seconds() + speed / self.braking;
         // Braking takes the robot half as far as it would have gone.
-        let way = self.speed * self.stop.seconds() / 2.0;
+        let way = speed * (self.latency.seconds() + speed / self.braking / 2.0);
         let meet = self.radius + PERSON_M + self.margin;
+        let (cos, sin) = (libm::cos(pose.heading), libm::sin(pose.heading));
         marks.iter().flatten().any(|mark| {
-            let walked = self.pace * (now.since(mark.at) + self.stop).seconds();
+            let walked = self.walked(now.since(mark.at).seconds() + stop, mark.resting);
             let reaches = |spot: &Spot| {
-                let seen = spot.seen_from(pose);
-                to_front(seen.x - way, seen.y, meet) < walked
+                let (dx, dy) = (spot.x - pose.x, spot.y - pose.y);
+                to_front(dx * cos + dy * sin - way, dy * cos - dx * sin, meet) < walked
             };
             mark.arc.iter().any(reaches)
         })
     }
+}
+
+/// Whether two arcs are of one place, as near as sonar can tell. Their ends don't count: who walks past the
+/// robot leaves one cone where the next begins.
+fn same_place(a: &[Spot; 3], b: &[Spot; 3]) -> bool {
+    libm::hypot(a[1].x - b[1].x, a[1].y - b[1].y) < RESTING_M
 }
 
 /// How far it is from (x, y) to the front half of a disc of `radius` about the origin; endless from behind,
@@ -187,6 +253,7 @@ impl Module for Collide {
             beat.emit(HALT, Pulse);
             return;
         };
+        self.follow(pose, beat.stamp(POSE).unwrap_or(now));
         if let Some(map) = beat.arrived(MAP) {
             let at = beat.stamp(MAP).unwrap_or(now);
             let before = match self.state {
@@ -212,6 +279,7 @@ impl Module for Collide {
 
     fn reset(&mut self) {
         self.state = State::Blind;
+        (self.before, self.speed) = (None, 0.0);
     }
 
     fn state(&self) -> &'static str {

@@ -40,7 +40,7 @@ static DECLARATION: Declaration = Declaration {
     about: "turns the robot towards a heading, then tells forward to go",
     diagram: "Idle --heading--> Turning --on target/go--> Going --done--> Idle; busy states ignore headings",
     inputs: &[
-        Port::new("heading", Kind::Polar, "where to, in the robot's frame"),
+        Port::new("heading", Kind::Polar, "where to, in the robot's frame").between(-1e6, 1e6),
         Port::new("compass", Kind::Number, "which way the robot faces").unit("rad"),
         Port::new("done", Kind::Pulse, "forward has stopped"),
     ],

@@ -26,7 +26,9 @@ static DECLARATION: Declaration = Declaration {
     about: "sums a heading as an attraction with the repulsive force, near to where it should and clear of things",
     diagram: "Free --goal--> Drawn --force/heading := attraction*unit(goal) + F--> Drawn --goal too old--> Free",
     inputs: &[
-        Port::new("goal", Kind::Number, "where to go, by the compass").unit("rad"),
+        Port::new("goal", Kind::Number, "where to go, by the compass")
+            .unit("rad")
+            .between(-1e6, 1e6),
         Port::new("force", Kind::Vector, "the repulsion, in the robot's frame").unit("1/m2"),
         Port::new("compass", Kind::Number, "which way the robot faces").unit("rad"),
     ],

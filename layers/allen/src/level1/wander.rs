@@ -45,6 +45,16 @@ static DECLARATION: Declaration = Declaration {
             unit: "1",
             about: "by how much of it the time varies",
         },
+        Parameter {
+            name: "spread",
+            takes: Takes::Number {
+                low: 0.0,
+                high: core::f64::consts::PI,
+                default: Some(core::f64::consts::PI),
+            },
+            unit: "rad",
+            about: "how far to either side of straight ahead a heading may lie",
+        },
     ],
 };
 
@@ -53,6 +63,7 @@ struct Wander {
     seed: u64,
     every: Span,
     jitter: f64,
+    spread: f64,
     next: Time,
 }
 
@@ -63,6 +74,7 @@ impl Wander {
             seed: settings.seed(),
             every: settings.span("every"),
             jitter: settings.number("jitter"),
+            spread: settings.number("spread"),
             next: Time::ZERO,
         }
     }
@@ -76,7 +88,7 @@ impl Module for Wander {
         if beat.now() < self.next {
             return;
         }
-        let turn = self.random.between(-core::f64::consts::PI, core::f64::consts::PI);
+        let turn = self.random.between(-self.spread, self.spread);
         beat.emit(HEADING, wrap(compass + turn));
         let stretch = 1.0 + self.random.between(-self.jitter, self.jitter);
         let wait = Span::from_seconds(self.every.seconds() * stretch).unwrap_or(self.every);

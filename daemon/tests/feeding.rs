@@ -1,0 +1,103 @@
+//! Who is fed while all is well: systemd's watchdog, and a device that a plain file stands in for.
+
+mod stage;
+
+use std::os::unix::net::UnixDatagram;
+use std::time::Duration;
+
+use rustix::process::Signal;
+use stage::{Stage, wait_for};
+
+/// A creature file with a watchdog device.
+fn with_device(stage: &Stage, device: &str) -> String {
+    let text = allen::CREATURE.replace("[halt]\n", &format!("[halt]\nwatchdog_device = \"{device}\"\n"));
+    assert_ne!(text, allen::CREATURE, "allen.toml has a [halt] of its own line");
+    let path = stage.run.join("fed.toml");
+    std::fs::write(&path, text).expect("a creature file");
+    path.to_string_lossy().into_owned()
+}
+
+#[test]
+fn systemd_hears_ready_meals_while_all_beat_and_stopping() {
+    let stage = Stage::new("systemd");
+    let path = stage.run.join("notify");
+    let socket = UnixDatagram::bind(&path).expect("a socket for the test");
+    let heard = |wait: Duration| {
+        socket
+            .set_read_timeout(Some(wait))
+            .expect("a socket takes a time-out");
+        let mut bytes = [0; 4096];
+        let n = socket.recv(&mut bytes).ok()?;
+        Some(String::from_utf8_lossy(&bytes[..n]).into_owned())
+    };
+    let long = Duration::from_secs(30);
+    let arguments = ["--name", "fed", "--headless", "--seconds", "120"];
+    let variables = [
+        ("NOTIFY_SOCKET", path.to_str().expect("a plain path")),
+        ("WATCHDOG_USEC", "400000"),
+    ];
+    let mut daemon = stage.start_with(env!("CARGO_BIN_EXE_subsumed"), &arguments, &variables);
+    assert!(heard(long).is_some_and(|said| said.contains("READY=1")));
+    for _ in 0..5 {
+        assert!(heard(long).is_some_and(|said| said.contains("WATCHDOG=1")));
+    }
+    daemon.signal(Signal::STOP);
+    // What was under way when it froze; then silence.
+    while heard(Duration::from_secs(1)).is_some() {}
+    assert_eq!(heard(Duration::from_secs(2)), None);
+    daemon.signal(Signal::CONT);
+    assert!(
+        heard(long).is_some_and(|said| said.contains("WATCHDOG=1")),
+        "fed again"
+    );
+    assert!(daemon.leave().success());
+    let mut last = String::new();
+    while let Some(said) = heard(Duration::from_millis(200)) {
+        last = said;
+    }
+    assert!(last.contains("STOPPING=1"), "{last}");
+}
+
+#[test]
+fn a_device_is_fed_and_bidden_farewell_only_after_an_orderly_halt() {
+    let stage = Stage::new("device");
+    let device = stage.run.join("watchdog");
+    std::fs::write(&device, "").expect("a stand-in");
+    let creature = with_device(&stage, &device.to_string_lossy());
+    let eaten = || std::fs::read_to_string(&device).expect("the stand-in is there");
+    let mut daemon = stage.daemon("fed", &["--creature", &creature]);
+    wait_for("it is fed", || eaten().len() > 3);
+    assert!(daemon.leave().success());
+    assert!(
+        eaten().ends_with(".V") && eaten().matches('V').count() == 1,
+        "{}",
+        eaten()
+    );
+    std::fs::write(&device, "").expect("a stand-in");
+    let mut daemon = stage.daemon("fed", &["--creature", &creature]);
+    wait_for("it is fed", || eaten().len() > 3);
+    daemon.kill();
+    assert!(
+        !eaten().contains('V'),
+        "a killed daemon must leave the device to bite"
+    );
+}
+
+#[test]
+fn a_device_that_cannot_be_fed_refuses_the_start() {
+    let stage = Stage::new("nodevice");
+    let creature = with_device(&stage, "/nowhere/watchdog");
+    let mut daemon = stage.start(
+        env!("CARGO_BIN_EXE_subsumed"),
+        &["--creature", &creature, "--headless"],
+    );
+    assert_eq!(daemon.end().code(), Some(1));
+    daemon.says("the watchdog device /nowhere/watchdog cannot be written", 1);
+    let creature = with_device(&stage, "watchdog");
+    let mut daemon = stage.start(
+        env!("CARGO_BIN_EXE_subsumed"),
+        &["--creature", &creature, "--headless"],
+    );
+    assert_eq!(daemon.end().code(), Some(2));
+    daemon.says("\"watchdog\" is not an absolute path", 1);
+}

@@ -1,0 +1,354 @@
+//! Taps as they are joined to a port, before a register or on an outlet: what was last seen of each, and in
+//! which series they stand.
+//!
+//! Must never decide what becomes of a message of the wire: that is for [`crate::tap`] to say.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use super::page::Reader;
+use super::register::Limits;
+use crate::clock::{Span, Time};
+use crate::message::{WORDS_MAX, Words};
+use crate::tap::Window;
+
+/// Most suppressors on one input, and inhibitors on one output: one for each level above it and then
+/// some; the source's largest stack has fourteen layers (Brooks 1991 §8.2).
+pub const TAPS_MAX: usize = 16;
+
+/// How far ahead of the beat a stamp may lie: all clocks are one clock, so only the time the beat itself
+/// has been running counts, and a beat that ran longer than this was an overrun of any sensible period.
+pub const AHEAD_MAX: Span = Span::millis(100);
+
+/// Who a tap belongs to: 0 for the creature file itself, else the number of the plugged layer.
+pub type Plug = u32;
+
+/// A tap as it is joined to a port.
+#[derive(Debug)]
+pub struct TapEnd {
+    /// Where its messages come from.
+    pub reader: Reader,
+    /// Its time constant τ.
+    pub time_constant: Span,
+    /// Level of the layer it comes from.
+    pub level: u8,
+    /// Whose it is.
+    pub plug: Plug,
+    /// Where what happens at it is counted, for those who watch.
+    pub gauge: Arc<TapGauge>,
+    /// Room at its port for it and those before it. A tap that is joined while its layer beats brings it along;
+    /// one that is joined when the layer is built needs none.
+    pub room: Room,
+}
+
+/// Memory for the taps of one port, made by whoever may allocate and given back with the tap that brought it.
+/// Most ports are never tapped, so they have none of their own.
+#[derive(Debug, Default)]
+pub struct Room(Vec<Joined>);
+
+impl Room {
+    /// No room: for ports of a layer that does not beat yet.
+    pub fn none() -> Room {
+        Room(Vec::new())
+    }
+
+    /// Room for as many taps as a port may have.
+    pub fn full() -> Room {
+        Room(Vec::with_capacity(TAPS_MAX))
+    }
+}
+
+/// Counters of a tap that other threads may look at.
+#[derive(Debug, Default)]
+pub struct TapGauge {
+    number: u16,
+    delivered: AtomicU64,
+    rejected: AtomicU64,
+    faults: AtomicU64,
+}
+
+impl TapGauge {
+    /// The counters of the tap that those who trace know by `number`.
+    pub fn numbered(number: u16) -> TapGauge {
+        TapGauge {
+            number,
+            ..TapGauge::default()
+        }
+    }
+
+    /// The number that those who trace know the tap by; 0 if it was given none.
+    pub fn number(&self) -> u16 {
+        self.number
+    }
+
+    /// What was counted so far.
+    pub fn counts(&self) -> TapCounts {
+        // Relaxed: numbers to look at; nothing hangs on their order.
+        TapCounts {
+            delivered: self.delivered.load(Ordering::Relaxed),
+            rejected: self.rejected.load(Ordering::Relaxed),
+            faults: self.faults.load(Ordering::Relaxed),
+        }
+    }
+}
+
+/// Counts one more. Only the thread that owns the port counts, so load and store need not be one step.
+fn count(counter: &AtomicU64) {
+    counter.store(counter.load(Ordering::Relaxed) + 1, Ordering::Relaxed);
+}
+
+/// What became of a message that a port looked at.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Fate {
+    /// It took effect.
+    Delivered,
+    /// A tap's window kept it out.
+    Rejected,
+    /// It was no message: not a number, out of range, or stamped in the future.
+    Fault,
+}
+
+/// A message of a tap that a port took in at its last look.
+#[derive(Clone, Copy, Debug)]
+pub struct TapLook<'t> {
+    /// The tap, by the number of its gauge.
+    pub tap: u16,
+    /// The message's number on its wire.
+    pub number: u64,
+    /// When it was written, as the tap's window has it; of a faulty message that of the one before.
+    pub stamp: Time,
+    /// Its words; of a faulty message those of the one before.
+    pub words: &'t [f64],
+    /// What became of it.
+    pub fate: Fate,
+}
+
+/// What was counted at one tap.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct TapCounts {
+    /// Messages of the tap that took effect.
+    pub delivered: u64,
+    /// Messages of the wire that the tap's windows rejected or dropped.
+    pub rejected: u64,
+    /// Messages of the tap that were no message: not a number, out of range, or stamped in the future.
+    pub faults: u64,
+}
+
+/// A tap with what was last seen of it.
+#[derive(Debug)]
+pub(super) struct Joined {
+    pub(super) end: TapEnd,
+    pub(super) seen: u64,
+    pub(super) window: Option<Window>,
+    pub(super) words: Words,
+    /// Whether its newest message came in at the last look.
+    pub(super) fresh: bool,
+    /// What became of the message that the last look took in, if it took one in.
+    pub(super) fate: Option<Fate>,
+    /// Told to go; stays until its window has run out, so that nothing rejected comes back to life.
+    pub(super) leaving: bool,
+}
+
+impl Joined {
+    pub(super) fn new(end: TapEnd) -> Joined {
+        // A message written before the tap was joined has no effect: the wire was not tapped then.
+        let seen = end.reader.read().map_or(0, |r| r.number);
+        Joined {
+            end,
+            seen,
+            window: None,
+            words: [0.0; WORDS_MAX],
+            fresh: false,
+            fate: None,
+            leaving: false,
+        }
+    }
+
+    /// Takes in the tap's newest message if there is one that was not seen.
+    #[inline]
+    pub(super) fn look(&mut self, now: Time, limits: Option<&Limits>) {
+        self.fresh = false;
+        self.fate = None;
+        if !self.leaving && self.end.reader.changed(self.seen) {
+            self.take_in(now, limits);
+        }
+    }
+
+    /// Takes in the tap's newest message, of which there is one that was not seen.
+    fn take_in(&mut self, now: Time, limits: Option<&Limits>) {
+        let mut words = [0.0; WORDS_MAX];
+        let Some((number, stamp)) = self.end.reader.take_newer(self.seen, &mut words) else {
+            return;
+        };
+        self.seen = number;
+        let newest = self.window.map_or(Time::ZERO, |w| w.stamp);
+        let stamp = match plausible(stamp, now) {
+            Some(stamp) if stamp >= newest && limits.is_none_or(|l| l.accept(&words)) => stamp,
+            _ => {
+                count(&self.end.gauge.faults);
+                self.fate = Some(Fate::Fault);
+                return;
+            }
+        };
+        self.window = Some(Window {
+            stamp,
+            time_constant: self.end.time_constant,
+        });
+        self.words = words;
+        self.fresh = true;
+        self.fate = Some(Fate::Rejected);
+    }
+
+    /// Counts a message of the wire that this tap's window kept out.
+    pub(super) fn reject(&self) {
+        count(&self.end.gauge.rejected);
+    }
+
+    /// Counts a message of the tap that took effect.
+    pub(super) fn take_effect(&mut self) {
+        count(&self.end.gauge.delivered);
+        self.fate = Some(Fate::Delivered);
+    }
+
+    /// What the last look took in.
+    pub(super) fn look_taken(&self) -> Option<TapLook<'_>> {
+        let fate = self.fate?;
+        Some(TapLook {
+            tap: self.end.gauge.number,
+            number: self.seen,
+            stamp: self.window.map_or(Time::ZERO, |w| w.stamp),
+            words: &self.words[..self.end.reader.kind().words()],
+            fate,
+        })
+    }
+
+    pub(super) fn state(&self) -> TapState {
+        TapState {
+            window: self.window,
+            counts: self.end.gauge.counts(),
+        }
+    }
+
+    #[inline]
+    pub(super) fn gone(&self, now: Time) -> bool {
+        self.leaving && self.window.is_none_or(|w| now >= w.stamp + w.time_constant)
+    }
+}
+
+/// A tap as it stands, for those who watch.
+#[derive(Clone, Copy, Debug)]
+pub struct TapState {
+    /// Its newest message's window.
+    pub window: Option<Window>,
+    /// What was counted.
+    pub counts: TapCounts,
+}
+
+/// The stamp of a message read at `now`: never later than `now` (it was written while this beat was
+/// already under way), or `None` if it lies so far ahead that its writer's clock is wrong.
+#[inline]
+pub(super) fn plausible(stamp: Time, now: Time) -> Option<Time> {
+    (stamp <= now + AHEAD_MAX).then(|| stamp.min(now))
+}
+
+/// Joins `end` after taps of lower or equal level; gives it back when there is no room.
+pub(super) fn join(taps: &mut Vec<Joined>, mut end: TapEnd) -> Result<(), TapEnd> {
+    if taps.len() == TAPS_MAX {
+        return Err(end);
+    }
+    if taps.len() == taps.capacity() && end.room.0.capacity() > taps.len() {
+        // Moves into the room that came along; the old one leaves with the tap.
+        let mut room = std::mem::take(&mut end.room.0);
+        room.append(taps);
+        end.room.0 = std::mem::replace(taps, room);
+    }
+    let place = taps
+        .iter()
+        .position(|t| t.end.level > end.level)
+        .unwrap_or(taps.len());
+    taps.insert(place, Joined::new(end));
+    Ok(())
+}
+
+/// Tells the taps of `plug` to go.
+pub(super) fn release(taps: &mut [Joined], plug: Plug) {
+    for tap in taps.iter_mut().filter(|t| t.end.plug == plug) {
+        tap.leaving = true;
+    }
+}
+
+pub(super) fn window_of(taps: &[Joined], gauge: &Arc<TapGauge>) -> Option<Window> {
+    let tap = taps.iter().find(|t| Arc::ptr_eq(&t.end.gauge, gauge))?;
+    tap.window
+}
+
+/// Hands over the taps that have left and whose windows have run out.
+#[inline]
+pub(super) fn sweep(taps: &mut Vec<Joined>, now: Time, mut gone: impl FnMut(TapEnd)) {
+    let mut k = 0;
+    while k < taps.len() {
+        if taps[k].gone(now) {
+            gone(taps.remove(k).end);
+        } else {
+            k += 1;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::message::Kind;
+    use crate::wire::Page;
+
+    fn end(level: u8, room: Room) -> TapEnd {
+        let page = Page::in_memory(1);
+        TapEnd {
+            reader: page.reader(0, Kind::Number).expect("there"),
+            time_constant: Span::millis(1),
+            level,
+            plug: u32::from(level),
+            gauge: Arc::default(),
+            room,
+        }
+    }
+
+    #[test]
+    fn a_tap_with_room_is_joined_without_a_new_allocation() {
+        // Full with one tap: the next needs room.
+        let mut taps = Vec::with_capacity(1);
+        join(&mut taps, end(3, Room::none())).expect("room for the file's own");
+        let room = Room::full();
+        let (place, size) = (room.0.as_ptr(), room.0.capacity());
+        join(&mut taps, end(1, room)).expect("room came along");
+        assert_eq!(
+            (taps.as_ptr(), taps.capacity()),
+            (place, size),
+            "moved into the room"
+        );
+        // The next ones need none of theirs, and give it back untouched.
+        for level in [2, 5, 4] {
+            join(&mut taps, end(level, Room::full())).expect("room is there");
+            assert_eq!(taps.as_ptr(), place);
+        }
+        let levels: Vec<u8> = taps.iter().map(|t| t.end.level).collect();
+        assert_eq!(levels, [1, 2, 3, 4, 5], "in series by level");
+        release(&mut taps, 1);
+        let mut gone = Vec::new();
+        sweep(&mut taps, Time(0), |end| gone.push(end));
+        assert_eq!(
+            (gone.len(), taps.len(), taps.as_ptr()),
+            (1, 4, place),
+            "the room stays when who brought it goes"
+        );
+    }
+
+    #[test]
+    fn there_is_an_end_to_taps() {
+        let mut taps = Vec::new();
+        for _ in 0..TAPS_MAX {
+            join(&mut taps, end(1, Room::full())).expect("within the bound");
+        }
+        assert!(join(&mut taps, end(1, Room::full())).is_err());
+    }
+}

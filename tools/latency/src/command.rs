@@ -1,0 +1,350 @@
+//! `subsumectl latency`: what is asked for on the command line, and what is answered.
+//!
+//! Must never end without saying what was measured: an interruption is noted, not an error.
+
+use std::fmt::Write as _;
+use std::path::PathBuf;
+use std::process::ExitCode;
+use std::time::Duration;
+
+use clap::ValueEnum;
+use ipc::clock::Span;
+use serde_json::{Value, json};
+
+use crate::gate::{self, Compared, LIMITS};
+use crate::load::Load;
+use crate::pair::{Contest, Side};
+use crate::plant::Plant;
+use crate::ratio::Ratio;
+use crate::run::{Asked, Outcome, run};
+use crate::{cyclictest, report};
+
+/// The reference to measure against.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Reference {
+    /// cyclictest of Debian's package rt-tests.
+    Cyclictest,
+}
+
+/// Arguments of `subsumectl latency`.
+#[derive(clap::Args, Clone, Debug)]
+#[command(after_help = "Examples:\n  \
+    subsumectl latency                                    half a minute, nothing else running\n  \
+    subsumectl latency --load memory --seconds 60         beside a load on the same processor\n  \
+    subsumectl latency --load churn                       with layers that come, go and are killed\n  \
+    subsumectl latency --against cyclictest --rounds 10   in pairs with the reference\n\n\
+    Files in --out: latency.hlog (HdrHistogram interval log, V2), *.hgrm, latency.svg, latency.json, latency.md.\n\
+    Only one processor is loaded. Ctrl-C keeps what was measured. docs/timing.md says what each number means.\n\
+    Status: 0 done; 1 the host refuses, or --gate does not pass; 2 bad input.")]
+pub struct LatencyArgs {
+    /// What else the processor has to do
+    #[arg(long, value_enum, default_value = "idle")]
+    load: Load,
+    /// How long the lab's creature is measured; 0 to leave it out
+    #[arg(long, default_value_t = 30.0, value_name = "N")]
+    seconds: f64,
+    /// Measure in pairs with this
+    #[arg(long, value_enum)]
+    against: Option<Reference>,
+    /// Paired rounds of each contest
+    #[arg(long, default_value_t = 10, value_name = "N")]
+    rounds: usize,
+    /// How long each is
+    #[arg(long, default_value_t = 10.0, value_name = "N")]
+    round_seconds: f64,
+    /// Time between two beats
+    #[arg(long, default_value = "1ms", value_name = "TIME", value_parser = Span::parse)]
+    period: Span,
+    /// The processor under test; the last one if not given
+    #[arg(long, value_name = "N")]
+    cpu: Option<usize>,
+    /// SCHED_FIFO priority in paired rounds
+    #[arg(long, default_value_t = 80, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=98))]
+    priority: u8,
+    /// How long is spun before a beat where it is
+    #[arg(long, default_value = "50us", value_name = "TIME", value_parser = Span::parse)]
+    spin: Span,
+    /// The creature's threads spin before their beats as well
+    #[arg(long)]
+    spinning: bool,
+    /// Folder for the files
+    #[arg(long, default_value = "latency-report", value_name = "FOLDER")]
+    out: PathBuf,
+    /// End with status 1 unless the run is within the margins
+    #[arg(long)]
+    gate: bool,
+    /// A fault put into every step on purpose, to see the gate fail
+    #[arg(long, value_enum, hide = true)]
+    plant: Option<Plant>,
+}
+
+/// Longest run in one go, so that a slip of the keyboard does not measure for a year.
+const SECONDS_MAX: f64 = 86_400.0;
+
+/// Runs the command.
+pub fn command(args: &LatencyArgs, json: bool) -> ExitCode {
+    let asked = match ask(args) {
+        Ok(asked) => asked,
+        Err(message) => {
+            eprintln!("subsumectl latency: {message}");
+            return ExitCode::from(2);
+        }
+    };
+    if args.against.is_some() && !cyclictest::available() {
+        eprintln!(
+            "subsumectl latency: cyclictest cannot be run; install it (Debian: apt-get install rt-tests)"
+        );
+        return ExitCode::FAILURE;
+    }
+    daemon::executor::host::limit_runaway();
+    let locked = daemon::executor::host::lock_memory().err();
+    let outcome = match run(&asked) {
+        Ok(mut outcome) => {
+            outcome.refusals.extend(locked.iter().map(ToString::to_string));
+            outcome
+        }
+        Err(message) => {
+            eprintln!("subsumectl latency: {message}");
+            return ExitCode::FAILURE;
+        }
+    };
+    answer(args, &asked, &outcome, json)
+}
+
+fn ask(args: &LatencyArgs) -> Result<Asked, String> {
+    let cpus = daemon::executor::host::processors();
+    let cpu = args.cpu.or(cpus.last().copied()).unwrap_or(0);
+    if !cpus.contains(&cpu) {
+        return Err(format!(
+            "--cpu {cpu}: expected one of the processors of this process: {cpus:?}"
+        ));
+    }
+    for (name, seconds) in [
+        ("--seconds", args.seconds),
+        ("--round-seconds", args.round_seconds),
+    ] {
+        if !(0.0..=SECONDS_MAX).contains(&seconds) {
+            return Err(format!("{name} {seconds}: expected 0 to {SECONDS_MAX} seconds"));
+        }
+    }
+    if args.against.is_some() && args.round_seconds < 1.0 {
+        return Err("--round-seconds: expected at least 1".into());
+    }
+    if args.period < Span::micros(100)
+        || args.period > Span::millis(100)
+        || !args.period.0.is_multiple_of(2_000)
+        || 1_000_000_000 % args.period.0 != 0
+    {
+        return Err(format!(
+            "--period {}: expected an even number of microseconds from 100us to 100ms of which a second is a multiple",
+            args.period
+        ));
+    }
+    if args.spin.0 * 2 > args.period.0 / 2 {
+        return Err(format!(
+            "--spin {}: expected at most a quarter of the period",
+            args.spin
+        ));
+    }
+    Ok(Asked {
+        load: args.load,
+        length: Duration::from_secs_f64(args.seconds),
+        cpu,
+        other_cpu: cpus.iter().copied().find(|c| *c != cpu).unwrap_or(cpu),
+        priority: args.priority,
+        period: args.period,
+        spin: args.spin,
+        creature_spins: args.spinning,
+        rounds: if args.against.is_some() { args.rounds } else { 0 },
+        round: Duration::from_secs_f64(args.round_seconds),
+        plant: args.plant,
+    })
+}
+
+/// The part of a side that a comparison looks at.
+type Part = fn(&Side) -> &hdrhistogram::Histogram<u64>;
+
+/// Every comparison of the rounds, and of quiet and churning intervals.
+fn compare(outcome: &Outcome) -> Vec<Compared> {
+    let wake_up: Part = |side| &side.wake_up;
+    let error: Part = |side| &side.period_error;
+    let response: Part = |side| &side.response;
+    let rows: [(&str, Contest, Part, bool); 6] = [
+        ("wake-up, ours / ours (control)", Contest::Control, wake_up, false),
+        ("wake-up, sleep / cyclictest", Contest::Sleep, wake_up, true),
+        (
+            "wake-up and step, sleep / cyclictest's wake-up",
+            Contest::Sleep,
+            response,
+            true,
+        ),
+        (
+            "period error, ours / ours (control)",
+            Contest::Control,
+            error,
+            false,
+        ),
+        ("period error, sleep / cyclictest", Contest::Sleep, error, false),
+        ("period error, spin / cyclictest", Contest::Spin, error, true),
+    ];
+    let ratios = |contest: Contest, part: Part, q: f64| {
+        let each = outcome.rounds_of(contest).map(|r| {
+            let [ours, other] = &r.sides;
+            part(ours).value_at_quantile(q) as f64 / part(other).value_at_quantile(q) as f64
+        });
+        Ratio::of(&each.collect::<Vec<f64>>())
+    };
+    let mut compared = Vec::new();
+    for (what, contest, part, judged) in rows {
+        for (q, quantile, base) in LIMITS {
+            let Some(ratio) = ratios(contest, part, q) else {
+                continue;
+            };
+            let control = ratios(Contest::Control, part, q);
+            compared.push(Compared {
+                what: what.into(),
+                quantile,
+                ratio,
+                limit: judged.then(|| gate::limit(base, control.as_ref())),
+            });
+        }
+    }
+    compared.extend(churn(outcome));
+    compared
+}
+
+/// Step times of churning intervals against the quiet ones before them, over all layers.
+fn churn(outcome: &Outcome) -> Vec<Compared> {
+    if !outcome.churning.contains(&true) {
+        return Vec::new();
+    }
+    let steps = || outcome.tracks.iter().filter(|t| t.metric == "step");
+    let mut compared = Vec::new();
+    for (q, quantile, base) in &LIMITS[..2] {
+        let mut ratios = Vec::new();
+        for track in steps() {
+            for (two, churning) in track.intervals.windows(2).zip(outcome.churning.windows(2)) {
+                if churning == [false, true] {
+                    let value = |k: usize| two[k].histogram.value_at_quantile(*q) as f64;
+                    ratios.push(value(1) / value(0));
+                }
+            }
+        }
+        compared.extend(Ratio::of(&ratios).map(|ratio| Compared {
+            what: "step, with churn / without".into(),
+            quantile,
+            ratio,
+            limit: Some(*base),
+        }));
+    }
+    compared
+}
+
+fn answer(args: &LatencyArgs, asked: &Asked, outcome: &Outcome, json: bool) -> ExitCode {
+    let compared = compare(outcome);
+    let allocations = daemon::alloc::broken();
+    let faults = gate::faults(&compared, &outcome.kept, allocations, &outcome.refusals);
+    let summary = summary(asked, outcome, &compared, allocations, &faults);
+    let table = table(asked, outcome, &compared, allocations, &faults);
+    if let Err(e) = report::write(&args.out, outcome.began, &outcome.tracks, &summary, &table) {
+        eprintln!("subsumectl latency: {}: {e}", args.out.display());
+        return ExitCode::FAILURE;
+    }
+    if json {
+        println!("{summary:#}");
+    } else {
+        println!("{table}\nfiles: {}", args.out.display());
+    }
+    if args.gate && !faults.is_empty() {
+        faults.iter().for_each(|fault| eprintln!("gate: {fault}"));
+        return ExitCode::FAILURE;
+    }
+    ExitCode::SUCCESS
+}
+
+fn summary(
+    asked: &Asked,
+    outcome: &Outcome,
+    compared: &[Compared],
+    allocations: u64,
+    faults: &[String],
+) -> Value {
+    let uname = rustix::system::uname();
+    let plant = asked.plant.map(|p| format!("{p:?}").to_lowercase());
+    json!({
+        "kernel": uname.release().to_string_lossy(), "machine": uname.machine().to_string_lossy(),
+        "load": asked.load.name(), "cpu": asked.cpu, "priority": asked.priority,
+        "period_ns": asked.period.0, "spin_ns": asked.spin.0,
+        "creature_wakes_by": if asked.creature_spins { "spin" } else { "sleep" },
+        "rounds": outcome.rounds_of(Contest::Sleep).count(), "round_s": asked.round.as_secs_f64(),
+        "interrupted": outcome.interrupted, "planted": plant,
+        "refusals": outcome.refusals, "threads": outcome.kept, "allocations": allocations,
+        "churn_events": outcome.churn_events, "compared": compared, "faults": faults,
+        "tracks": outcome.tracks.iter().map(report::describe).collect::<Vec<_>>(),
+    })
+}
+
+fn table(
+    asked: &Asked,
+    outcome: &Outcome,
+    compared: &[Compared],
+    allocations: u64,
+    faults: &[String],
+) -> String {
+    let wakes = if asked.creature_spins {
+        format!("spin {}", asked.spin)
+    } else {
+        "sleep".into()
+    };
+    let mut out = format!(
+        "## Latency under load `{}`\n\nprocessor {}, period {}, the creature waits by {wakes}{}{}\n\n\
+         Times in microseconds, nothing of them a gate:\n\n",
+        asked.load.name(),
+        asked.cpu,
+        asked.period,
+        if outcome.interrupted {
+            ", **interrupted**"
+        } else {
+            ""
+        },
+        asked
+            .plant
+            .map_or(String::new(), |p| format!(", **planted: {p:?}**")),
+    );
+    out.push_str(&report::table::of(&outcome.tracks));
+    if !compared.is_empty() {
+        out.push_str("\n| ratio | at | median (min–max, spread) | geometric mean | limit | |\n|---|---|---|---:|---:|---|\n");
+        for c in compared {
+            let limit = c.limit.map_or("–".into(), |l| format!("{l:.2}"));
+            let verdict = match (c.limit, c.passes()) {
+                (None, _) => "",
+                (Some(_), true) => "passes",
+                (Some(_), false) => "**fails**",
+            };
+            let _ = writeln!(
+                out,
+                "| {} | {} | {} | {:.2} | {limit} | {verdict} |",
+                c.what, c.quantile, c.ratio, c.ratio.mean
+            );
+        }
+    }
+    out.push_str("\n| thread | beats | missed | in a row | skipped | page faults | sleeps |\n|---|---:|---:|---:|---:|---:|---:|\n");
+    for k in &outcome.kept {
+        let _ = writeln!(
+            out,
+            "| {} | {} | {} | {} | {} | {} | {} |",
+            k.thread, k.beats, k.missed, k.missed_in_row_max, k.skipped, k.faults, k.sleeps
+        );
+    }
+    let _ = writeln!(out, "\nallocations on real-time threads: {allocations}");
+    if outcome.churn_events > 0 {
+        let _ = writeln!(out, "came, left or were killed: {}", outcome.churn_events);
+    }
+    for refusal in &outcome.refusals {
+        let _ = writeln!(out, "**best effort**: {refusal}");
+    }
+    for fault in faults {
+        let _ = writeln!(out, "**outside the margins**: {fault}");
+    }
+    out
+}

@@ -1,0 +1,282 @@
+//! A run: the creature under a load, then paired rounds under the same load, until the time or patience is over.
+//!
+//! Must never lose what was measured: an interruption ends the run early and everything is still reported.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant, SystemTime};
+
+use indicatif::{ProgressBar, ProgressStyle};
+use ipc::clock::Span;
+use ipc::wiring::creature::Wake;
+
+use crate::churn::Churn;
+use crate::creature::{self, Alive, Kept};
+use crate::load::{Load, Loaded};
+use crate::pair::{self, CONTESTS, Contest, Round};
+use crate::plant::Plant;
+use crate::track::Track;
+
+/// What is asked for.
+#[derive(Clone, Debug)]
+pub struct Asked {
+    /// What else the processor has to do.
+    pub load: Load,
+    /// How long the creature is measured.
+    pub length: Duration,
+    /// The processor under test.
+    pub cpu: usize,
+    /// Another one, for whatever is not measured; the same where there is only one.
+    pub other_cpu: usize,
+    /// SCHED_FIFO priority in paired rounds.
+    pub priority: u8,
+    /// Time between two beats.
+    pub period: Span,
+    /// How long is spun before a beat where it is.
+    pub spin: Span,
+    /// Whether the creature spins.
+    pub creature_spins: bool,
+    /// Paired rounds of each contest; none without a reference.
+    pub rounds: usize,
+    /// How long each is.
+    pub round: Duration,
+    /// What is planted.
+    pub plant: Option<Plant>,
+}
+
+/// What was measured.
+#[derive(Debug)]
+pub struct Outcome {
+    /// When it began.
+    pub began: SystemTime,
+    /// The creature's layers, then both sides of every contest.
+    pub tracks: Vec<Track>,
+    /// What the host counted of the threads.
+    pub kept: Vec<Kept>,
+    /// The rounds.
+    pub rounds: Vec<Round>,
+    /// Step times of quiet and churning intervals in turn, beginning with a quiet one: (churning, track, interval).
+    pub churning: Vec<bool>,
+    /// Who came, left or was killed.
+    pub churn_events: u64,
+    /// What the host refused.
+    pub refusals: Vec<String>,
+    /// Whether it was interrupted.
+    pub interrupted: bool,
+}
+
+/// Pieces that the time of the creature is cut into: as many pairs of quiet and churning ones as make a median.
+const INTERVALS: u32 = 20;
+
+/// Seconds that a round takes beyond its length: both sides begin at a full second.
+const ROUND_EXTRA: Duration = Duration::from_millis(2500);
+
+/// Runs what was asked for.
+///
+/// # Errors
+/// When something cannot be started.
+pub fn run(asked: &Asked) -> Result<Outcome, String> {
+    let leave = Arc::new(AtomicBool::new(false));
+    for signal in [signal_hook::consts::SIGINT, signal_hook::consts::SIGTERM] {
+        signal_hook::flag::register(signal, leave.clone()).map_err(|e| e.to_string())?;
+    }
+    let paired = (asked.round + ROUND_EXTRA) * (asked.rounds * CONTESTS.len()) as u32;
+    let progress = Progress::new(asked.length + paired);
+    let mut outcome = Outcome {
+        began: SystemTime::now(),
+        tracks: Vec::new(),
+        kept: Vec::new(),
+        rounds: Vec::new(),
+        churning: Vec::new(),
+        churn_events: 0,
+        refusals: Vec::new(),
+        interrupted: false,
+    };
+    let load = Loaded::start(asked.load, asked.cpu).map_err(|e| format!("starting a load: {e}"))?;
+    if asked.length > Duration::ZERO {
+        measure_creature(asked, &leave, &progress, &mut outcome)?;
+    }
+    let interrupted = || leave.load(Ordering::Relaxed);
+    let setting = pair::Setting {
+        cpu: asked.cpu,
+        main_cpu: asked.other_cpu,
+        priority: asked.priority,
+        period: asked.period,
+        spin: asked.spin,
+        round: asked.round,
+        plant: asked.plant,
+    };
+    'rounds: for n in 0..asked.rounds {
+        for contest in CONTESTS {
+            progress.say(&format!(
+                "round {} of {}: {}",
+                n + 1,
+                asked.rounds,
+                contest.sides().0
+            ));
+            let looking = || {
+                progress.tick();
+                interrupted()
+            };
+            match pair::round(&setting, contest, n % 2 == 1, &looking).map_err(|e| e.to_string())? {
+                Some(round) => outcome.keep(round, asked.round),
+                None => break 'rounds,
+            }
+        }
+    }
+    drop(load);
+    progress.end();
+    outcome.interrupted = interrupted();
+    Ok(outcome)
+}
+
+fn measure_creature(
+    asked: &Asked,
+    leave: &AtomicBool,
+    progress: &Progress,
+    outcome: &mut Outcome,
+) -> Result<(), String> {
+    let wake = if asked.creature_spins {
+        Wake::Spin(asked.spin)
+    } else {
+        Wake::Sleep
+    };
+    let mut alive = Alive::start(&creature::Setting {
+        cpu: asked.cpu,
+        period: asked.period,
+        wake,
+    })?;
+    outcome.refusals = alive.refusals();
+    let mut churn: Option<Churn> = None;
+    let piece = asked.length / INTERVALS;
+    progress.say(&format!(
+        "the creature {} under load {}",
+        alive.name,
+        asked.load.name()
+    ));
+    for n in 0..INTERVALS {
+        let end = Instant::now() + piece;
+        let churns = asked.load == Load::Churn && n % 2 == 1;
+        if churns {
+            churn = Some(Churn::new(&alive.name, asked.other_cpu));
+        }
+        while Instant::now() < end && !leave.load(Ordering::Relaxed) {
+            if let Some(churn) = &mut churn {
+                churn.tick().map_err(|e| format!("churn: {e}"))?;
+            }
+            alive.drain();
+            progress.tick();
+            std::thread::sleep(Duration::from_millis(20));
+        }
+        alive.look(true);
+        outcome.churning.push(churns);
+        if let Some(ended) = churn.take() {
+            outcome.churn_events += ended.events();
+            drop(ended);
+            // Those killed at the end are cleaned up in nobody's interval.
+            std::thread::sleep(Duration::from_millis(100));
+            alive.look(false);
+        }
+        if leave.load(Ordering::Relaxed) {
+            break;
+        }
+    }
+    let (tracks, kept) = alive.finish();
+    outcome.tracks = tracks;
+    outcome.kept = kept;
+    Ok(())
+}
+
+impl Outcome {
+    fn keep(&mut self, round: Round, length: Duration) {
+        let began = SystemTime::now().duration_since(self.began).unwrap_or_default();
+        let began = began.saturating_sub(length);
+        let (ours, other) = round.contest.sides();
+        for (name, side) in [(ours, &round.sides[0]), (other, &round.sides[1])] {
+            for (metric, h) in [
+                ("wake-up", &side.wake_up),
+                ("period-error", &side.period_error),
+                ("response", &side.response),
+            ] {
+                // The reference has no step; its response is its wake-up.
+                if metric == "response" && name.starts_with("cyclictest") {
+                    continue;
+                }
+                let known = self
+                    .tracks
+                    .iter()
+                    .position(|t| t.of == name && t.metric == metric);
+                let place = known.unwrap_or_else(|| {
+                    self.tracks.push(Track::new(name, metric));
+                    self.tracks.len() - 1
+                });
+                self.tracks[place].add(began, length, h.clone());
+            }
+        }
+        for refusal in &round.refusals {
+            if !self.refusals.contains(refusal) {
+                self.refusals.push(refusal.clone());
+            }
+        }
+        let thread = format!("probe ({})", ours);
+        let known = self.kept.iter().position(|k| k.thread == thread);
+        let place = known.unwrap_or_else(|| {
+            self.kept.push(Kept {
+                thread,
+                tid: 0,
+                beats: 0,
+                missed: 0,
+                missed_in_row_max: 0,
+                skipped: 0,
+                identity_faults: 0,
+                faults: 0,
+                sleeps: 0,
+            });
+            self.kept.len() - 1
+        });
+        let kept = &mut self.kept[place];
+        kept.beats += round.beats;
+        kept.faults += round.host.faults;
+        kept.sleeps += round.host.sleeps;
+        self.rounds.push(round);
+    }
+
+    /// The rounds of one contest.
+    pub fn rounds_of(&self, contest: Contest) -> impl Iterator<Item = &Round> {
+        self.rounds.iter().filter(move |r| r.contest == contest)
+    }
+}
+
+/// A bar with the time that is left, on a terminal.
+struct Progress {
+    bar: ProgressBar,
+    began: Instant,
+    length: Duration,
+}
+
+impl Progress {
+    fn new(length: Duration) -> Progress {
+        let bar = ProgressBar::new(length.as_millis() as u64);
+        let style = ProgressStyle::with_template("{bar:32} {percent:>3} %  {eta} left  {msg}");
+        bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+        Progress {
+            bar,
+            began: Instant::now(),
+            length,
+        }
+    }
+
+    fn say(&self, text: &str) {
+        self.bar.set_message(text.to_string());
+        self.tick();
+    }
+
+    fn tick(&self) {
+        let passed = self.began.elapsed().min(self.length);
+        self.bar.set_position(passed.as_millis() as u64);
+    }
+
+    fn end(&self) {
+        self.bar.finish_and_clear();
+    }
+}
