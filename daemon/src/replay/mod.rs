@@ -13,6 +13,7 @@
 //! would have in the creature. A layer that the recording does not know beats at its own times and sees what had
 //! been written by then.
 
+mod build;
 mod player;
 
 use std::collections::BTreeMap;
@@ -89,7 +90,7 @@ struct Play<'r> {
 
 /// Runs `recording` through the layers of `creature`, built of `kinds`.
 pub fn replay(recording: &Recording, creature: &Creature, kinds: &Kinds) -> Outcome {
-    let players = player::players(recording, creature, kinds);
+    let players = build::players(recording, creature, kinds);
     let played = players
         .iter()
         .map(|p| vec![Vec::new(); p.outputs.len()])

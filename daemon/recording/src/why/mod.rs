@@ -9,14 +9,19 @@
 //! Wires may run in a ring (a module may listen to what follows from it): a message that was explained once is not
 //! explained again, so every chain ends.
 
-use std::collections::{BTreeMap, HashSet};
+mod holders;
+mod link;
+
+use std::collections::HashSet;
 
 use ipc::clock::{Span, Time};
 use ipc::message::Kind;
 use ipc::tap::Window;
 use ipc::wire::Fate;
 use ipc::wiring::creature::How;
-use serde::Serialize;
+
+pub use holders::{Holder, holders};
+pub use link::{Input, Link, Rejected, TapSeen};
 
 use crate::manifest::{MOTOR, Tap};
 use crate::reader::{Message, Recording, TapMessage};
@@ -24,111 +29,6 @@ use crate::reader::{Message, Recording, TapMessage};
 /// Longest chain that is followed: each step is one message of one module, and the deepest of the source's stacks
 /// has fourteen layers of a few modules each.
 const STEPS_MAX: usize = 64;
-
-/// A message, and what stands behind it.
-#[derive(Clone, Debug, Serialize)]
-pub struct Link {
-    /// The wire, or the input of the body.
-    pub wire: String,
-    /// The message's number.
-    pub number: u64,
-    /// When it was written, in seconds since the daemon began.
-    pub time_s: f64,
-    /// How old it was when it was looked at, in milliseconds.
-    pub age_ms: f64,
-    /// What it says.
-    pub value: Vec<f64>,
-    /// Its unit, or empty.
-    pub unit: String,
-    /// The module that wrote it; none for the body.
-    pub module: Option<String>,
-    /// Its layer; the motor unit for what the body says and is told.
-    pub layer: String,
-    /// The layer's level.
-    pub level: Option<u8>,
-    /// The process, if it is not the daemon's.
-    pub pid: Option<u32>,
-    /// Why the halt gate was closed, for what the body was told.
-    pub halted: Vec<String>,
-    /// Whether the inputs are what the beat looked at, not what stamps suggest.
-    pub traced: bool,
-    /// How many messages of the wire were inhibited since, until it was looked at.
-    pub inhibited: u64,
-    /// Whether it was explained before, further up.
-    pub above: bool,
-    /// What its module held.
-    pub inputs: Vec<Input>,
-}
-
-/// A register of the module, as the beat found it.
-#[derive(Clone, Debug, Serialize)]
-pub struct Input {
-    /// The port.
-    pub port: String,
-    /// Whether its message had arrived just then.
-    pub arrived: bool,
-    /// The tap that brought it, if one did.
-    pub tap: Option<String>,
-    /// Taps on the port, and whether they held.
-    pub taps: Vec<TapSeen>,
-    /// How many messages of its own wire were rejected since the one it held came.
-    pub rejected: u64,
-    /// The newest of them.
-    pub newest_rejected: Option<Rejected>,
-    /// The message it held; none if it never had one.
-    pub held: Option<Box<Link>>,
-}
-
-/// A message that a tap's window kept out.
-#[derive(Clone, Debug, Serialize)]
-pub struct Rejected {
-    /// Its wire.
-    pub wire: String,
-    /// Its number.
-    pub number: u64,
-    /// How old it was, in milliseconds; none if it is not known any more.
-    pub age_ms: Option<f64>,
-    /// What it said.
-    pub value: Vec<f64>,
-}
-
-/// A tap, as it stood at some moment.
-#[derive(Clone, Debug, Serialize)]
-pub struct TapSeen {
-    /// Its layer.
-    pub layer: String,
-    /// Its level.
-    pub level: u8,
-    /// The wire that its messages come from.
-    pub from: String,
-    /// Which way it acts.
-    pub kind: How,
-    /// Whether its window held.
-    pub holds: bool,
-    /// For how long still, in milliseconds.
-    pub left_ms: f64,
-    /// How old its newest message was; none if it never had one.
-    pub age_ms: Option<f64>,
-}
-
-/// Who holds a tapped port.
-#[derive(Clone, Debug, Serialize)]
-pub struct Holder {
-    /// The port.
-    pub port: String,
-    /// Which way it is tapped.
-    pub kind: How,
-    /// Who holds it: the wire of a tap, or the port's own wire; none if it has none.
-    pub holder: Option<String>,
-    /// The layer of the tap that holds it.
-    pub layer: Option<String>,
-    /// How long the tap holds it still, in milliseconds.
-    pub left_ms: f64,
-    /// Who gets it next if nothing more is said; none if the tap does not hold.
-    pub next: Option<String>,
-    /// Every tap on it, in series.
-    pub taps: Vec<TapSeen>,
-}
 
 /// The chain behind the newest message of `wire` at the moment `at`; `wire` may be an input port as well.
 ///
@@ -459,67 +359,5 @@ fn tap_seen(tap: &Tap, newest: Option<Time>, now: Time) -> TapSeen {
         holds: left > Span::ZERO,
         left_ms: left.as_millis_f64(),
         age_ms: newest.map(|stamp| now.since(stamp).as_millis_f64()),
-    }
-}
-
-/// For every tapped port who holds it at the moment `at`, and who gets it next.
-pub fn holders(recording: &Recording, at: Time) -> Vec<Holder> {
-    let gone = |plug: u32| {
-        recording
-            .unplugs
-            .iter()
-            .any(|(time, p)| *p == plug && *time <= at)
-    };
-    let came = |plug: u32| {
-        recording
-            .plugs
-            .iter()
-            .any(|(time, p)| p.number == plug && *time <= at)
-    };
-    let mut ports: BTreeMap<(String, bool), Vec<(u32, Tap)>> = BTreeMap::new();
-    for (plug, tap) in recording.taps() {
-        let newest = tap_newest(recording, plug, &tap, at);
-        let running = newest.is_some_and(|stamp| stamp + tap.time_constant > at);
-        if plug == 0 || running || came(plug) && !gone(plug) {
-            let key = (tap.to.clone(), tap.how == How::Inhibit);
-            ports.entry(key).or_default().push((plug, tap));
-        }
-    }
-    let holder = |((port, _), mut taps): ((String, bool), Vec<(u32, Tap)>)| {
-        // In series: by level, and within one by the order in which they were declared.
-        taps.sort_by_key(|(_, t)| t.level);
-        let seen = |(plug, tap): &(u32, Tap)| tap_seen(tap, tap_newest(recording, *plug, tap, at), at);
-        hold(recording, port, taps[0].1.how, taps.iter().map(seen).collect())
-    };
-    ports.into_iter().map(holder).collect()
-}
-
-fn tap_newest(recording: &Recording, plug: u32, tap: &Tap, at: Time) -> Option<Time> {
-    let messages = recording.wires.get(&(plug, tap.from.clone()))?;
-    before(messages, at).map(|m| m.stamp)
-}
-
-fn hold(recording: &Recording, port: String, kind: How, taps: Vec<TapSeen>) -> Holder {
-    let own = match kind {
-        How::Suppress => recording.manifest.wire_into(&port).map(str::to_string),
-        How::Inhibit => Some(port.clone()),
-    };
-    // The last in the series that holds rejects what all before it bring.
-    let holder = taps.iter().rev().find(|t| t.holds);
-    let next = holder.map(|h| {
-        let later = taps.iter().rev().find(|t| t.left_ms > h.left_ms);
-        later
-            .map(|t| t.from.clone())
-            .or(own.clone())
-            .unwrap_or_else(|| "nobody".into())
-    });
-    Holder {
-        kind,
-        holder: holder.map(|h| h.from.clone()).or(own),
-        layer: holder.map(|h| h.layer.clone()),
-        left_ms: holder.map_or(0.0, |h| h.left_ms),
-        next,
-        port,
-        taps,
     }
 }
