@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use afsm::trace::{Trace, trace};
+use daemon::body;
 use daemon::gate::Causes;
 use daemon::machine::{Machine, kinds};
 use daemon::replay::replay;
@@ -73,9 +74,11 @@ fn live(text: &str, seconds: u64) -> (Arc<Manifest>, Vec<Item>) {
         match (who == motor, steps) {
             (true, true) => body.motor.gather(now),
             (true, false) => {
+                machine.watchdog.look(now);
+                machine.halt.watchdog.beat(now);
                 body.motor.act(now);
                 body.gauge.beat(now);
-                body.world.tick(now, &mut body.link);
+                body::turn(body.world.as_mut(), &mut body.link, || now);
             }
             (false, true) => machine.stations[who].running.step(now),
             (false, false) => {
