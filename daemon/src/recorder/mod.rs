@@ -83,6 +83,8 @@ pub struct Recorder {
 struct State {
     ring: Ring,
     listeners: Vec<Listener>,
+    /// Nobody will speak any more.
+    over: bool,
 }
 
 /// The recorder's end of what a listener hears.
@@ -152,6 +154,7 @@ impl Recorder {
             state: Mutex::new(State {
                 ring,
                 listeners: Vec::new(),
+                over: false,
             }),
         }
     }
@@ -162,10 +165,12 @@ impl Recorder {
         let waiting = Arc::new(AtomicUsize::new(0));
         let mut state = self.lock();
         let ring = state.ring.clone();
-        state.listeners.push(Listener {
-            items: sender,
-            waiting: waiting.clone(),
-        });
+        if !state.over {
+            state.listeners.push(Listener {
+                items: sender,
+                waiting: waiting.clone(),
+            });
+        }
         // Going through it takes a while; the recorder must not wait for that.
         drop(state);
         let first = match begin {
@@ -175,9 +180,11 @@ impl Recorder {
         (first, Heard { items, waiting })
     }
 
-    /// Nobody speaks any more: whoever listens ends.
+    /// Nobody speaks any more: whoever listens, now or later, ends.
     pub(crate) fn end(&self) {
-        self.lock().listeners.clear();
+        let mut state = self.lock();
+        state.over = true;
+        state.listeners.clear();
     }
 
     fn lock(&self) -> std::sync::MutexGuard<'_, State> {
