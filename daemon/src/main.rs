@@ -169,8 +169,14 @@ fn introduce(running: &Running, page: Option<&page::Server>) {
     if let Some(page) = page {
         println!("look at it: http://{}/", page.address());
     }
-    println!("plug the next layer in, from another terminal: cargo run --release -p allen");
-    println!("ask it: cargo run --release -p tools -- status        leave: Ctrl-C");
+    let other = match shared.name.as_str() {
+        "allen" => {
+            println!("plug the next layer in, from another terminal: cargo run --release -p allen");
+            String::new()
+        }
+        name => format!(" --creature {name}"),
+    };
+    println!("ask it: cargo run --release -p tools --{other} status        leave: Ctrl-C");
 }
 
 fn wait(options: &Options, leave: &AtomicBool) {

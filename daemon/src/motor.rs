@@ -30,6 +30,8 @@ use crate::watchdog::{Thaw, Vital};
 pub struct Motor {
     kind: &'static BodyKind,
     registers: Vec<Register>,
+    /// The motion inputs that a wire or a tap leads to: the others say nothing ever, and stand still.
+    driven: Vec<usize>,
     faults: u64,
     link: MotorEnd,
     sensors: Vec<Sensor>,
@@ -90,8 +92,8 @@ impl Motor {
             .expect("a creature with a motor unit has a body");
         let kind = body::find(body.declaration.name).expect("a checked body is of a known kind");
         let inputs = kind.declaration.inputs;
-        let mut registers = Vec::new();
-        for port in inputs {
+        let (mut registers, mut driven) = (Vec::new(), Vec::new());
+        for (index, port) in inputs.iter().enumerate() {
             let name = PortName {
                 module: BODY.into(),
                 port: port.name.into(),
@@ -102,9 +104,13 @@ impl Motor {
                 .flat_map(|l| &l.wires)
                 .find(|w| w.to == name);
             let reader = wire.map(|w| wires.reader(&w.from).expect("a checked wire has a writer"));
+            let wired = reader.is_some();
             let mut register = Register::new(port.limits(), reader);
-            join(taps, How::Suppress, &name, wires, |end| register.suppress(end));
+            let tapped = join(taps, How::Suppress, &name, wires, |end| register.suppress(end));
             registers.push(register);
+            if kind.motion.contains(&index) && (wired || tapped) {
+                driven.push(index);
+            }
         }
         let vital = creature
             .layers
@@ -114,6 +120,7 @@ impl Motor {
         Motor {
             kind,
             registers,
+            driven,
             faults: 0,
             link,
             sensors: sensors.into_iter().map(Sensor::new).collect(),
@@ -235,8 +242,7 @@ impl Motor {
 
     fn see(&mut self, now: Time) -> Seen {
         let stamps = self
-            .kind
-            .motion
+            .driven
             .iter()
             .map(|&i| self.registers[i].held().map(|(stamp, _)| *stamp));
         let oldest_command = stamps.min().flatten();
