@@ -40,8 +40,8 @@ for size in 80x24 200x60; do
   screen >"$captures/top-$size.txt"
   [ "$(wc -l <"$captures/top-$size.txt")" -le "${size#*x}" ] || fail "the screen has too many lines"
   keys s; shows 'by name'
-  keys / ; keys -l 'body.od'; keys Enter; shows 'filter: body.od'; hides 'turn.rate'; shows 'body.odometry'
-  keys Escape; shows 'turn.rate'
+  keys / ; keys -l 'body.od'; keys Enter; shows 'filter: body.od'; hides 'forward.speed'; shows 'body.odometry'
+  keys Escape; shows 'forward.speed'
   keys f; shows FROZEN; a=$(screen); sleep 1; [ "$a" = "$(screen)" ] || fail "a frozen screen must stand still"; keys f; hides FROZEN
   keys '?'; shows 'emergency stop, holds until reset'; keys Escape; hides 'holds until reset'
   keys h; shows 'HALTED: emergency stop'; halted || fail "h must halt"
