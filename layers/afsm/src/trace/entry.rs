@@ -99,7 +99,7 @@ pub fn times(words: &[u64]) -> (u64, Time, Time) {
 /// Reads the words of one beat.
 ///
 /// # Panics
-/// When they are not what [`Trace::next_beat`] gave.
+/// When they are not what [`Trace::next_beat`](super::Trace::next_beat) gave.
 pub fn decode(words: &[u64]) -> TracedBeat {
     let (number, step, commit) = times(words);
     let mut entries = Vec::new();
