@@ -33,7 +33,7 @@ ctl status 2>"$work/bad.log"; [ $? -eq 1 ] || fail "status without a daemon must
 grep -q 'no daemon runs' "$work/bad.log" || fail "status without a daemon must say so"
 set -e
 
-"$bin/subsumed" --name outside --page-port 0 --seed 7 >"$work/daemon.log" 2>&1 &
+"$bin/subsumed" --name outside --page-port 0 --seed 7 --flight-recorder "$work/flight" >"$work/daemon.log" 2>&1 &
 daemon=$!
 for _ in $(seq 100); do ctl status >/dev/null 2>&1 && break; sleep 0.1; done
 ctl status >/dev/null || fail "the daemon did not come up"
@@ -52,13 +52,14 @@ fi
 for round in 1 2; do
   "$bin/allen-wander" --creature outside >"$work/wander.log" 2>&1 & wander=$!
   ctl watch sonar.map --seconds 2 >"$work/watch.log" &
+  ctl record -o "$work/record$round.mcap" --seconds 2 >"$work/record.log" &
   sleep 2.5
   ctl status | grep -q 'wander .*attached' || fail "the wander layer is not attached in round $round"
   ctl wires >/dev/null
   kill -9 $wander; wait $wander 2>/dev/null || true
   sleep 0.7
   ctl status | grep -q 'wander .*attached' && fail "a killed layer must be gone"
-  ctl events | grep -q 'layer wander (pid [0-9]*) died' || fail "the death of a layer must be logged with its name"
+  ctl events >"$work/events.log"; grep -q 'layer wander (pid [0-9]*) died' "$work/events.log" || fail "the death of a layer must be logged with its name"
 done
 grep -q '#' "$work/watch.log" || fail "watching a wire must show messages"
 sleep 4
@@ -73,6 +74,7 @@ for trace in "$work"/strace.*; do
   [ -z "$other" ] || fail "system calls of a real-time thread other than its sleep: $other"
 done
 
+ctl record -o "$work/while.mcap" --seconds 1 >/dev/null || fail "recording must be possible while layers come and go"
 ctl halt >/dev/null; sleep 0.5
 [ "$(field halted)" = true ] || fail "halt must halt"
 ctl reset >/dev/null; sleep 0.5
@@ -97,7 +99,7 @@ grep -q -- '--page-port' "$work/taken.log" || fail "a taken port must name the o
 set -e
 
 # Ctrl-C first, on a daemon of its own; SIGTERM on the one that was watched.
-"$bin/subsumed" --name ctrlc --no-page >"$work/ctrlc.log" 2>&1 & second=$!
+"$bin/subsumed" --name ctrlc --no-page --flight-recorder off >"$work/ctrlc.log" 2>&1 & second=$!
 for _ in $(seq 100); do "$bin/subsumectl" --creature ctrlc status >/dev/null 2>&1 && break; sleep 0.1; done
 kill -INT $second; wait $second || fail "Ctrl-C must end with status 0"
 grep -q 'the body is halted: .*shutdown' "$work/ctrlc.log" || fail "the body must be halted before Ctrl-C ends the daemon"

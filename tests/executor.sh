@@ -9,6 +9,7 @@ cd "$(dirname "$0")/.."
 bin=$(realpath "${1:-${CARGO_TARGET_DIR:-target}/release}")
 work=$(mktemp -d)
 export SUBSUMED_DOMAIN="exec$$" SUBSUMED_RUN="$work/run"
+export XDG_STATE_HOME="$work/state"; unset STATE_DIRECTORY
 daemon=""
 clean() {
   [ -n "$daemon" ] && kill -9 "$daemon" 2>/dev/null || true

@@ -13,6 +13,7 @@ work=$(mktemp -d)
 chmod 755 "$work"
 cp "$bin/subsumed" "$bin/subsumed-body" "$bin/subsumectl" "$bin/allen-wander" "$work/"
 export SUBSUMED_DOMAIN="sec$$" SUBSUMED_RUN="$work/run"
+export XDG_STATE_HOME="$work/state"; unset STATE_DIRECTORY
 mkdir -m 755 "$SUBSUMED_RUN"
 owner=60001 stranger=60002
 chown $owner:$owner "$SUBSUMED_RUN"

@@ -22,6 +22,8 @@ pub struct Caller {
     spoke: AtomicU64,
     /// Whether it is an attached layer.
     stays: AtomicBool,
+    /// Whether it is sent a recording.
+    records: AtomicBool,
     socket: UnixStream,
 }
 
@@ -39,6 +41,21 @@ impl Caller {
     /// It is an attached layer from now on.
     pub fn stays(&self) {
         self.stays.store(true, Ordering::Relaxed);
+    }
+
+    /// It is sent a recording from now on.
+    pub fn records(&self) {
+        self.records.store(true, Ordering::Relaxed);
+    }
+
+    /// Closes its connection. A recording is told to end first: its thread closes when all of it is written.
+    fn send_away(&self) {
+        let directions = if self.records.load(Ordering::Relaxed) {
+            Shutdown::Read
+        } else {
+            Shutdown::Both
+        };
+        let _ = self.socket.shutdown(directions);
     }
 }
 
@@ -75,6 +92,7 @@ impl Callers {
             number: held.0,
             spoke: AtomicU64::new(now.0),
             stays: AtomicBool::new(false),
+            records: AtomicBool::new(false),
             socket,
         });
         held.1.push(caller.clone());
@@ -92,14 +110,14 @@ impl Callers {
         let silence = |c: &&Arc<Caller>| now.since(c.last_spoke());
         let movable = held.1.iter().filter(|c| !c.stays.load(Ordering::Relaxed));
         if let Some(caller) = movable.max_by_key(silence) {
-            let _ = caller.socket.shutdown(Shutdown::Both);
+            caller.send_away();
         }
     }
 
     /// Closes every connection.
     pub fn send_away(&self) {
         for caller in &self.lock().1 {
-            let _ = caller.socket.shutdown(Shutdown::Both);
+            caller.send_away();
         }
     }
 }

@@ -22,6 +22,8 @@ use crate::admission::Admission;
 use crate::callers::{CALLERS_MAX, Caller, Callers};
 use crate::gate::Causes;
 use crate::plugs::Joined;
+use crate::recorder::Begin;
+use crate::recorder::listener::{self, Wanted};
 use crate::running::Shared;
 
 /// How long a caller may be silent, unless it is a layer.
@@ -32,6 +34,9 @@ const LINE_TIME: Span = Span::secs(2);
 
 /// How long a caller may take to read an answer.
 const ANSWER_TIME: Duration = Duration::from_secs(5);
+
+/// How long a caller may take to read the next stretch of a recording.
+const RECORD_TIME: Duration = Duration::from_secs(30);
 
 /// How often a caller's thread looks whether it is to end.
 const LOOK: Duration = Duration::from_millis(200);
@@ -161,7 +166,7 @@ impl Door {
             callers.leave(caller.number);
         };
         let builder = std::thread::Builder::new().name("caller".into());
-        if builder.stack_size(256 << 10).spawn(answer).is_err() {
+        if builder.stack_size(512 << 10).spawn(answer).is_err() {
             self.callers.leave(number);
         }
     }
@@ -260,10 +265,49 @@ fn converse(
                 }
             }
             Request::Unplug => return Ok(Farewell::Said),
+            Request::Record { past, seconds, ring } => {
+                connection.send(&Reply::Recording)?;
+                caller.records();
+                record(connection, shared, past, seconds, ring)?;
+                return Ok(Farewell::Said);
+            }
             other => answer(other, shared),
         };
         connection.send(&reply)?;
     }
+}
+
+/// Records into the connection until the caller closes its direction of it.
+fn record(
+    connection: &Connection,
+    shared: &Shared,
+    past: bool,
+    seconds: Option<f64>,
+    ring: Option<Span>,
+) -> io::Result<()> {
+    let socket = connection.socket().try_clone()?;
+    let end = Arc::new(AtomicBool::new(false));
+    let (mut other_end, told) = (socket.try_clone()?, end.clone());
+    other_end.set_read_timeout(None)?;
+    other_end.set_write_timeout(Some(RECORD_TIME))?;
+    let listen = move || {
+        let mut byte = [0];
+        while matches!(io::Read::read(&mut other_end, &mut byte), Ok(1..)) {}
+        told.store(true, Ordering::Relaxed);
+    };
+    let ear = std::thread::Builder::new()
+        .name("ear".into())
+        .stack_size(64 << 10)
+        .spawn(listen)?;
+    let wanted = Wanted {
+        begin: if past { Begin::Past } else { Begin::Now },
+        length: seconds.and_then(|s| Duration::try_from_secs_f64(s).ok()),
+        ring,
+    };
+    let recorded = listener::record(&shared.recorder, wanted, io::BufWriter::new(&socket), &end);
+    let _ = socket.shutdown(std::net::Shutdown::Both);
+    let _ = ear.join();
+    recorded.map(drop).map_err(io::Error::other)
 }
 
 /// Whether a caller that says nothing has to go. A layer speaks with its wires; its socket only tells that it
@@ -319,8 +363,10 @@ fn answer(request: Request, shared: &Shared) -> Reply {
                 }
             }
         },
-        Request::Hello { .. } | Request::Plug(_) | Request::Unplug => Reply::Refused {
-            reasons: vec!["not now".into()],
-        },
+        Request::Hello { .. } | Request::Plug(_) | Request::Unplug | Request::Record { .. } => {
+            Reply::Refused {
+                reasons: vec!["not now".into()],
+            }
+        }
     }
 }

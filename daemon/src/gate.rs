@@ -68,6 +68,11 @@ impl Causes {
     /// Causes that no reset ends: the process has to go.
     pub const FINAL: Causes = Causes(128 | 1024);
 
+    /// Every cause with its name, in the order of its bit.
+    pub fn named() -> impl Iterator<Item = (Causes, &'static str)> {
+        NAMES.into_iter()
+    }
+
     /// Both sets together.
     #[must_use]
     pub const fn with(self, other: Causes) -> Causes {
@@ -197,12 +202,18 @@ impl Gate {
         }
         let transient = seen.standing.without(Causes::LATCHED);
         causes = causes.with(self.latched).with(transient);
-        let passage = match causes {
+        (causes, Passage::for_causes(causes))
+    }
+}
+
+impl Passage {
+    /// What passes while the gate is closed for `causes`.
+    pub const fn for_causes(causes: Causes) -> Passage {
+        match causes {
             Causes::NONE => Passage::Open,
             Causes::REFLEX => Passage::NoForward,
             _ => Passage::Closed,
-        };
-        (causes, passage)
+        }
     }
 }
 

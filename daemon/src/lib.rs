@@ -16,10 +16,14 @@ pub mod gate;
 pub mod halt;
 mod journal;
 pub mod machine;
+pub mod metrics;
 pub mod motor;
+pub mod options;
 pub mod plugs;
 pub mod policy;
+pub mod recorder;
 pub mod reload;
+pub mod replay;
 pub mod running;
 pub mod segment;
 pub mod status;
@@ -27,6 +31,7 @@ pub mod threads;
 pub mod view;
 pub mod virtual_run;
 pub mod watchdog;
+mod watcher;
 
 /// What a name given on the command line must be.
 pub const NAME_EXPECTED: &str = "expected 1 to 48 letters, digits, '-' or '_'";

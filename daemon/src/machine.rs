@@ -244,15 +244,19 @@ impl Machine {
     }
 }
 
-fn filed_taps(creature: &Creature) -> Vec<FiledTap> {
+/// The taps of a creature file, numbered from 1 in its order.
+pub fn filed_taps(creature: &Creature) -> Vec<FiledTap> {
     let of = |layer: &Layer| {
         let level = layer.level;
-        let filed = |tap: &ipc::wiring::creature::Tap| FiledTap {
-            tap: tap.clone(),
-            level,
-            gauge: Arc::new(TapGauge::default()),
-        };
-        layer.taps.iter().map(filed).collect::<Vec<_>>()
+        let taps = layer.taps.clone();
+        taps.into_iter().map(move |tap| (tap, level))
     };
-    creature.layers.iter().flat_map(of).collect()
+    let numbered = creature.layers.iter().flat_map(of).zip(1..);
+    numbered
+        .map(|((tap, level), number)| FiledTap {
+            tap,
+            level,
+            gauge: Arc::new(TapGauge::numbered(number)),
+        })
+        .collect()
 }

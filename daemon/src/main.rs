@@ -1,7 +1,6 @@
 //! `subsumed`: runs a creature.
 
 use std::net::SocketAddr;
-use std::path::PathBuf;
 use std::process::ExitCode;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -13,6 +12,8 @@ use daemon::control::{self, Control};
 use daemon::executor::host;
 use daemon::feeder::{self, Fed};
 use daemon::machine::{Machine, cells_apart, kinds};
+use daemon::metrics::{self, Endpoint, Metrics};
+use daemon::options::Options;
 use daemon::running::{self, Running};
 use daemon::segment;
 use daemon::view::View;
@@ -24,56 +25,16 @@ use ipc::wiring::{Source, check};
 #[global_allocator]
 static ALLOCATOR: daemon::alloc::Counting = daemon::alloc::Counting;
 
-/// Runs a subsumption creature on real-time threads, with its wires in shared memory.
-#[derive(Parser, Debug)]
-#[command(
-    version,
-    after_help = "Examples:\n  \
-    subsumed                                the built-in creature Allen in its office\n  \
-    subsumed --creature mine.toml           a creature of your own\n  \
-    subsumed --headless --seconds 60        one minute, nothing to look at\n  \
-    subsumed --name jerry --page-port 0     a second instance beside the first\n  \
-    subsumed --body hall                    the body lives in another process: `subsumed-body --name hall`\n\n\
-    Ctrl-C halts the body, then leaves. SIGHUP checks the creature file again and says what a restart would change.\n\
-    Status: 0 after a signal or --seconds; 1 when the host refuses; 2 for bad input."
-)]
-struct Options {
-    /// The creature file; without it, Allen
-    #[arg(long, value_name = "FILE")]
-    creature: Option<PathBuf>,
-    /// Name of this instance; the creature's own if not given
-    #[arg(long)]
-    name: Option<String>,
-    /// Name of the process that runs the body (see `subsumed-body`); without it, this one does
-    #[arg(long, value_name = "NAME")]
-    body: Option<String>,
-    /// Port of the live page on 127.0.0.1; 0 for any that is free
-    #[arg(long, default_value_t = 4686, value_name = "N")]
-    page_port: u16,
-    /// No live page
-    #[arg(long)]
-    no_page: bool,
-    /// Nothing to look at: no page, and only warnings on the terminal
-    #[arg(long)]
-    headless: bool,
-    /// Leave after N seconds
-    #[arg(long, value_name = "N")]
-    seconds: Option<f64>,
-    /// Seed of everything random, instead of the creature file's
-    #[arg(long, value_name = "N")]
-    seed: Option<u64>,
-}
-
 fn main() -> ExitCode {
     let options = Options::parse();
-    let creature = match load(&options) {
-        Ok(creature) => creature,
+    let (creature, file) = match load(&options) {
+        Ok(loaded) => loaded,
         Err(message) => {
             eprintln!("{message}");
             return ExitCode::from(2);
         }
     };
-    match run(&options, creature) {
+    match run(&options, creature, file) {
         Ok(()) => ExitCode::SUCCESS,
         Err(message) => {
             eprintln!("subsumed: {message}");
@@ -82,8 +43,8 @@ fn main() -> ExitCode {
     }
 }
 
-/// Reads and checks the creature file.
-fn load(options: &Options) -> Result<Creature, String> {
+/// Reads and checks the creature file; gives its text as well.
+fn load(options: &Options) -> Result<(Creature, String), String> {
     let source = match &options.creature {
         None => Source::new("allen.toml (built in)", allen::CREATURE),
         Some(path) => {
@@ -115,11 +76,11 @@ fn load(options: &Options) -> Result<Creature, String> {
     if options.seconds.is_some_and(|s| !s.is_finite() || s <= 0.0) {
         return Err("--seconds: expected a number of seconds above zero".into());
     }
-    Ok(creature)
+    Ok((creature, source.text))
 }
 
 /// Runs the creature until a signal comes or the time is over.
-fn run(options: &Options, creature: Creature) -> Result<(), String> {
+fn run(options: &Options, creature: Creature, file: String) -> Result<(), String> {
     let leave = Arc::new(AtomicBool::new(false));
     for signal in [signal_hook::consts::SIGTERM, signal_hook::consts::SIGINT] {
         signal_hook::flag::register(signal, leave.clone()).map_err(|e| format!("signal {signal}: {e}"))?;
@@ -144,23 +105,27 @@ fn run(options: &Options, creature: Creature) -> Result<(), String> {
         Some(_) => Machine::apart(creature, &kinds(), owned.page().clone()),
         None => Machine::new(creature, &kinds(), owned.page().clone(), None),
     };
-    let body = options.body.as_deref();
-    let running = running::start(&name, machine, owned, domain, body, fed)
-        .map_err(|e| format!("starting threads: {e}"))?;
+    let (body, settings) = (options.body.as_deref(), options.recorder(file));
+    let running = running::start(&name, machine, owned, domain, &settings, body, fed)
+        .map_err(|e| format!("starting threads and recordings: {e}"))?;
     let control = Control::open(&name, running.shared.clone(), admission)
         .map_err(|e| format!("the control socket: {e}"));
     let page = serve_page(options, &running);
-    let result = control.and_then(|control| page.map(|page| (control, page)));
-    let result = result.map(|(control, page)| {
+    let metrics = serve_metrics(options, &running);
+    let result = control.and_then(|control| Ok((control, page?, metrics?)));
+    let result = result.map(|(control, page, metrics)| {
         if !options.headless {
             introduce(&running, page.as_ref());
+        }
+        for address in metrics.iter().filter_map(|m| m.address) {
+            println!("metrics: http://{address}/metrics");
         }
         wait(options, &leave, || reload(options, &hup, &running));
         if segment::cut() > 0 {
             running.leave_cut();
         }
         // Nobody is answered any more while the body comes to a halt.
-        drop((control, page));
+        drop((control, page, metrics));
     });
     running.shut_down();
     result
@@ -174,6 +139,15 @@ fn serve_page(options: &Options, running: &Running) -> Result<Option<page::Serve
     page::serve(address, Arc::new(View(running.shared.clone())))
         .map(Some)
         .map_err(|e| e.to_string())
+}
+
+fn serve_metrics(options: &Options, running: &Running) -> Result<Vec<Metrics>, String> {
+    let port = options.metrics_port.map(Endpoint::Port);
+    let socket = options.metrics_socket.clone().map(Endpoint::Socket);
+    port.iter()
+        .chain(&socket)
+        .map(|endpoint| metrics::serve(endpoint, running.shared.clone()).map_err(|e| e.to_string()))
+        .collect()
 }
 
 fn introduce(running: &Running, page: Option<&page::Server>) {
@@ -214,7 +188,10 @@ fn reload(options: &Options, hup: &AtomicBool, running: &Running) {
         return;
     }
     feeder::reloading();
-    for line in daemon::reload::report(&running.shared.creature, load(options)) {
+    for line in daemon::reload::report(
+        &running.shared.creature,
+        load(options).map(|(creature, _)| creature),
+    ) {
         running.shared.events.note("reload", None, line);
     }
     feeder::reloaded();

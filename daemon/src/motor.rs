@@ -10,6 +10,8 @@
 use std::sync::Arc;
 
 use afsm::assemble::{FiledTap, Wires, join};
+use afsm::layer::trace_registers;
+use afsm::trace::Tracer;
 use ipc::clock::{Span, Time};
 use ipc::message::{WORDS_MAX, Words};
 use ipc::wire::{AHEAD_MAX, Reader, Register, Writer};
@@ -32,7 +34,7 @@ pub struct Motor {
     driven: Vec<usize>,
     faults: u64,
     link: MotorEnd,
-    sensors: Vec<(Writer, u64)>,
+    sensors: Vec<Sensor>,
     passed: Vec<Words>,
     reflexes: Vec<Reader>,
     vital: Vec<Arc<BeatGauge>>,
@@ -42,6 +44,32 @@ pub struct Motor {
     channel: Arc<HaltChannel>,
     resets: u64,
     period: Span,
+    tracer: Option<Tracer>,
+}
+
+/// A sensor's wire.
+#[derive(Debug)]
+struct Sensor {
+    wire: Writer,
+    /// Number of the newest message of the link that was seen.
+    seen: u64,
+    /// How many messages were written.
+    written: u64,
+}
+
+impl Sensor {
+    fn new(wire: Writer) -> Sensor {
+        Sensor {
+            wire,
+            seen: 0,
+            written: 0,
+        }
+    }
+
+    fn write(&mut self, now: Time, words: &Words) {
+        self.wire.write(now, words);
+        self.written += 1;
+    }
 }
 
 impl Motor {
@@ -95,7 +123,7 @@ impl Motor {
             driven,
             faults: 0,
             link,
-            sensors: sensors.into_iter().map(|writer| (writer, 0)).collect(),
+            sensors: sensors.into_iter().map(Sensor::new).collect(),
             passed: vec![[0.0; WORDS_MAX]; inputs.len()],
             reflexes: creature
                 .halt
@@ -110,6 +138,7 @@ impl Motor {
             channel,
             resets: 0,
             period: body.period,
+            tracer: None,
         }
     }
 
@@ -118,15 +147,31 @@ impl Motor {
         self.period
     }
 
+    /// Traces every beat from now on.
+    pub fn trace(&mut self, tracer: Tracer) {
+        self.tracer = Some(tracer);
+    }
+
+    /// How many inputs and outputs the body has.
+    pub fn ports(&self) -> (usize, usize) {
+        (self.registers.len(), self.sensors.len())
+    }
+
     /// First half of a beat: looks at every command.
     pub fn gather(&mut self, now: Time) {
+        if let Some(tracer) = &mut self.tracer {
+            tracer.begin(now);
+        }
         if self.link.taker.take(&mut self.link.readers) {
             // Another world: what it says counts from the beginning.
-            self.sensors.iter_mut().for_each(|(_, number)| *number = 0);
+            self.sensors.iter_mut().for_each(|sensor| sensor.seen = 0);
         }
         for register in &mut self.registers {
             // Taps of the creature file never leave, so there is none to give back.
             register.gather(now, std::mem::forget);
+        }
+        if let Some(tracer) = &mut self.tracer {
+            trace_registers(tracer, &self.registers);
         }
     }
 
@@ -139,7 +184,7 @@ impl Motor {
 
     /// Writes a message on the wire of the `index`-th sensor at once, as though the world had sent it.
     pub fn put(&mut self, index: usize, now: Time, words: &Words) {
-        self.sensors[index].0.write(now, words);
+        self.sensors[index].write(now, words);
     }
 
     /// The register behind the `index`-th command; `None` for the reset line, which a body has not.
@@ -157,41 +202,42 @@ impl Motor {
         let seen = self.see(now);
         let (causes, passage) = self.gate.decide(&seen);
         self.channel.show(causes, now);
+        if let Some(tracer) = &mut self.tracer {
+            tracer.causes(causes.0);
+        }
         for (index, register) in self.registers.iter().enumerate() {
             let motion = self.kind.motion.contains(&index);
             let words = match register.held() {
-                Some((_, words)) if motion => self.gated(index, *words, passage),
+                Some((_, words)) if motion => gated(self.kind, index, *words, passage),
                 Some((_, words)) if register.arrived() => *words,
                 _ if motion => [0.0; WORDS_MAX],
                 _ => continue,
             };
             self.passed[index] = words;
             self.link.commands[index].write(now, &words);
-        }
-        let readers = &self.link.readers.sensors;
-        for (reader, (writer, number)) in readers.iter().zip(&mut self.sensors) {
-            if let Some(reading) = reader.newer_than(*number) {
-                *number = reading.number;
-                writer.write(now, &reading.words);
+            if let Some(tracer) = &mut self.tracer {
+                tracer.passed(index, &words[..self.kind.declaration.inputs[index].kind.words()]);
             }
+        }
+        let readers = self.link.readers.sensors.iter();
+        for (slot, (reader, sensor)) in readers.zip(&mut self.sensors).enumerate() {
+            let Some(reading) = reader.newer_than(sensor.seen) else {
+                continue;
+            };
+            sensor.seen = reading.number;
+            sensor.write(now, &reading.words);
+            if let Some(tracer) = &mut self.tracer {
+                tracer.wrote(slot, sensor.written, &reading.words[..sensor.wire.kind().words()]);
+            }
+        }
+        if let Some(tracer) = &mut self.tracer {
+            tracer.end(now);
         }
     }
 
     /// What the body is told on input `index`, for tests and watchers.
     pub fn passed(&self, index: usize) -> f64 {
         self.passed[index][0]
-    }
-
-    fn gated(&self, index: usize, mut words: Words, passage: Passage) -> Words {
-        match passage {
-            Passage::Open => words,
-            Passage::NoForward if self.kind.forward == Some(index) => {
-                words[0] = words[0].min(0.0);
-                words
-            }
-            Passage::NoForward => words,
-            Passage::Closed => [0.0; WORDS_MAX],
-        }
     }
 
     fn see(&mut self, now: Time) -> Seen {
@@ -245,5 +291,18 @@ impl Motor {
             standing = standing.with(Causes::MEMORY);
         }
         standing
+    }
+}
+
+/// What of a command to input `index` of a body of this kind gets through the gate.
+pub fn gated(kind: &BodyKind, index: usize, mut words: Words, passage: Passage) -> Words {
+    match passage {
+        Passage::Open => words,
+        Passage::NoForward if kind.forward == Some(index) => {
+            words[0] = words[0].min(0.0);
+            words
+        }
+        Passage::NoForward => words,
+        Passage::Closed => [0.0; WORDS_MAX],
     }
 }

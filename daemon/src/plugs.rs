@@ -73,16 +73,28 @@ struct State {
     attached: Vec<Attached>,
     last: u32,
     version: u64,
+    /// Number of the newest tap, those of the creature file included.
+    tap: u16,
     /// Layers that broke the policy, by name, and until when they are not let in again.
     barred: Vec<(String, Time)>,
+}
+
+impl State {
+    /// The next tap's number. It comes round after 65,535 taps; one that old has long left.
+    fn tap_number(&mut self) -> u16 {
+        self.tap = self.tap.checked_add(1).unwrap_or(1);
+        self.tap
+    }
 }
 
 impl Plugs {
     /// Nobody attached yet.
     pub fn new(creature: Creature, directory: Directory, hands: Vec<Hand>, events: Arc<Events>) -> Plugs {
+        let filed: usize = creature.layers.iter().map(|l| l.taps.len()).sum();
         let state = Mutex::new(State {
             hands,
             version: 1,
+            tap: filed as u16,
             ..State::default()
         });
         Plugs {
@@ -204,7 +216,8 @@ impl Plugs {
         tap: &PlugTap,
         page: &Arc<Page>,
     ) -> Result<AttachedTap, Vec<String>> {
-        let joined = self.policy.join(number, plug, tap, page);
+        let gauge = Arc::new(TapGauge::numbered(state.tap_number()));
+        let joined = self.policy.join(number, plug, tap, page, gauge);
         let (station, command) = (joined.station, joined.command);
         if state.hands[station].commands.push(command).is_err() {
             for hand in &mut state.hands {

@@ -102,15 +102,21 @@ impl Policy {
         directory
     }
 
-    /// The tap of `plug`, which was let in as number `number` with its wires in `page`.
+    /// The tap of `plug`, which was let in as number `number` with its wires in `page`; counted at `gauge`.
     ///
     /// # Panics
     /// When there were reasons against it.
-    pub fn join(&self, number: u32, plug: &Plug, tap: &PlugTap, page: &Arc<Page>) -> Joining {
+    pub fn join(
+        &self,
+        number: u32,
+        plug: &Plug,
+        tap: &PlugTap,
+        page: &Arc<Page>,
+        gauge: Arc<TapGauge>,
+    ) -> Joining {
         let mut outputs = plug.outputs.iter();
         let index = outputs.position(|o| o.name == tap.from).expect("checked");
         let reader = page.reader(index, plug.outputs[index].kind).expect("checked");
-        let gauge = Arc::new(TapGauge::default());
         let end = TapEnd {
             reader: reader.clone(),
             time_constant: tap.time_constant,

@@ -11,24 +11,26 @@ use std::sync::{Arc, Mutex};
 use std::thread::JoinHandle;
 use std::time::Duration;
 
-use ipc::clock::{self, Span, Time};
+use ipc::clock::{self, Span};
 use ipc::wire::iceoryx::{Domain, OwnedPage};
 use ipc::wiring::creature::Creature;
 use ipc::wiring::directory::{Directory, output_ports};
+use recording::Manifest;
 use serde_json::{Value, json};
 
-use crate::alloc;
 use crate::body::remote::{self, Remote};
 use crate::body::{self, World, WorldEnd};
 use crate::events::Events;
 use crate::executor::{Beating, Refusal, host, plan};
 use crate::feeder::{self, Fed, Tended};
 use crate::gate::Causes;
-use crate::halt::{CauseCount, HaltChannel};
+use crate::halt::HaltChannel;
 use crate::machine::{Apart, Embodied, Machine};
 use crate::plugs::Plugs;
-use crate::status::{self, Rates, Record, Watched, WatchedTap};
+use crate::recorder::{self, Recorder};
+use crate::status::{Rates, Record, Watched, WatchedTap};
 use crate::threads::{Crew, Start};
+use crate::watcher::Watcher;
 
 /// What the threads of the daemon share, none of them real-time.
 pub struct Shared {
@@ -46,6 +48,8 @@ pub struct Shared {
     pub domain: Domain,
     /// What of the world does not change; known once the body is there.
     floor: Mutex<Value>,
+    /// What happens, for those who record it.
+    pub recorder: Recorder,
     status: Mutex<Arc<Value>>,
 }
 
@@ -58,6 +62,11 @@ impl Shared {
             .expect("nobody panics holding the status")
             .clone();
         Value::clone(&status)
+    }
+
+    /// Another status.
+    pub(crate) fn set_status(&self, status: Value) {
+        *self.status.lock().expect("nobody panics holding the status") = Arc::new(status);
     }
 
     /// What of the world does not change.
@@ -102,16 +111,17 @@ fn refused(refusals: &[Refusal]) -> std::io::Error {
     std::io::Error::new(std::io::ErrorKind::PermissionDenied, text)
 }
 
-/// Starts `machine`, whose wires are in `owned`, as `name`. `body` is the name of the process that runs its
-/// body, if one does; `fed` is who is fed while all is well.
+/// Starts `machine`, whose wires are in `owned`, as `name`, and records it as `settings` say. `body` is the name of
+/// the process that runs its body, if one does; `fed` is who is fed while all is well.
 ///
 /// # Errors
-/// When the host refuses a thread.
+/// When the host refuses a thread, or the file to record into.
 pub fn start(
     name: &str,
     machine: Machine,
     owned: OwnedPage,
     domain: Domain,
+    settings: &recorder::Settings,
     body: Option<&str>,
     fed: Fed,
 ) -> std::io::Result<Running> {
@@ -130,6 +140,8 @@ pub fn start(
     } = machine;
     let directory = Directory::of(&creature, name);
     let floor = embodied.as_ref().map_or(Value::Null, |b| b.world.floor());
+    let causes = Causes::named().map(|(_, name)| name.to_string()).collect();
+    let manifest = Manifest::of(&creature, name, &settings.file, began, causes);
     let plugs = Plugs::new(creature.clone(), directory, hands, events.clone());
     let shared = Arc::new(Shared {
         name: name.into(),
@@ -139,6 +151,7 @@ pub fn start(
         plugs,
         domain,
         floor: Mutex::new(floor),
+        recorder: Recorder::new(manifest, settings.flight.is_some()),
         status: Mutex::new(Arc::new(json!({}))),
     });
     let (stop, leave) = (Arc::new(AtomicBool::new(false)), Arc::new(AtomicBool::new(false)));
@@ -156,8 +169,11 @@ pub fn start(
     crew.refusals.extend(host::be_ordinary().err());
     crew.refusals.extend(host::lock_memory().err());
     host::limit_runaway();
-    crew.start_layers(planned, stations)?;
     let mut helpers = Vec::new();
+    if let Some(path) = &settings.record {
+        helpers.push(recorder::listener::into_file(shared.clone(), path)?);
+    }
+    crew.start_layers(planned, stations)?;
     let view = Arc::new(Mutex::new(json!({})));
     let progress = watchdog.progress.clone();
     if let Some(spec) = &creature.body {
@@ -193,12 +209,14 @@ pub fn start(
     let Crew {
         beating,
         records,
+        feeds,
         mut refusals,
         ..
     } = crew;
     if !creature.executor.best_effort && !refusals.is_empty() {
         stop.store(true, Ordering::Relaxed);
         leave.store(true, Ordering::Relaxed);
+        shared.recorder.end();
         beating.into_iter().for_each(Beating::join);
         helpers.into_iter().for_each(|helper| drop(helper.join()));
         return Err(refused(&refusals));
@@ -231,6 +249,7 @@ pub fn start(
         from: filed.tap.from.to_string(),
         to: filed.tap.to.to_string(),
         time_constant: filed.tap.time_constant,
+        layer: (layer_of(&creature, &filed.tap), filed.level),
         reader: net
             .iter()
             .find(|w| w.name == filed.tap.from.to_string())
@@ -254,6 +273,7 @@ pub fn start(
         counts: Vec::new(),
     };
     helpers.push(watcher.watch(leave.clone())?);
+    helpers.push(recorder::start(shared.clone(), feeds, settings, leave.clone())?);
     Ok(Running {
         shared,
         refusals,
@@ -263,6 +283,12 @@ pub fn start(
         stop,
         leave,
     })
+}
+
+/// The layer that declares a tap.
+fn layer_of(creature: &Creature, tap: &ipc::wiring::creature::Tap) -> String {
+    let layer = creature.layers.iter().find(|l| l.taps.contains(tap));
+    layer.map_or(String::new(), |l| l.name.clone())
 }
 
 impl Running {
@@ -349,151 +375,4 @@ fn keeper(owned: OwnedPage, shared: Arc<Shared>, leave: Arc<AtomicBool>) -> std:
             std::thread::sleep(Duration::from_millis(5));
         }
     })
-}
-
-/// Looks at everything ten times a second.
-struct Watcher {
-    shared: Arc<Shared>,
-    began: Time,
-    mode: &'static str,
-    notes: Vec<String>,
-    wires: Vec<Watched>,
-    taps: Vec<WatchedTap>,
-    records: Arc<Mutex<Vec<Record>>>,
-    view: Arc<Mutex<Value>>,
-    rates: Rates,
-    causes: Causes,
-    counts: Vec<CauseCount>,
-}
-
-impl Watcher {
-    fn watch(mut self, leave: Arc<AtomicBool>) -> std::io::Result<JoinHandle<()>> {
-        std::thread::Builder::new().name("watcher".into()).spawn(move || {
-            while !leave.load(Ordering::Relaxed) {
-                self.look();
-                std::thread::sleep(Duration::from_millis(100));
-            }
-        })
-    }
-
-    fn look(&mut self) {
-        let now = clock::monotonic();
-        for record in self
-            .records
-            .lock()
-            .expect("nobody panics holding the records")
-            .iter_mut()
-        {
-            if let Some(text) = record.drain() {
-                self.shared.events.note("overrun", Some(&record.name), text);
-            }
-        }
-        self.note_halts();
-        self.shared.plugs.police(now);
-        let status = self.status(now);
-        *self
-            .shared
-            .status
-            .lock()
-            .expect("nobody panics holding the status") = Arc::new(status);
-    }
-
-    /// Notes when the body halts and goes on; a reflex is everyday life and not noted.
-    fn note_halts(&mut self) {
-        let counts = self.shared.halt.counts();
-        let causes = self.shared.halt.decided().0.without(Causes::REFLEX);
-        // Causes that began since the last look, some of them perhaps over again.
-        for CauseCount { cause, count, began } in &counts {
-            let before = self
-                .counts
-                .iter()
-                .find(|c| c.cause == *cause)
-                .map_or(0, |c| c.count);
-            let unseen = count - before - u64::from(causes.has(*cause) && !self.causes.has(*cause));
-            if *cause == Causes::REFLEX || before == *count || before == 0 || unseen == 0 {
-                continue;
-            }
-            let at = began.since(self.began).seconds();
-            let name = cause.names().join("");
-            let text =
-                format!("the body was halted for a moment: {name} ({unseen} times, last at {at:.3} s)");
-            self.shared.events.note_causes("halt", None, &cause.names(), text);
-        }
-        self.counts = counts;
-        if causes == self.causes {
-            return;
-        }
-        let text = match causes {
-            Causes::NONE => "the body may move".to_string(),
-            some => format!("the body is halted: {}", some.names().join(", ")),
-        };
-        self.causes = causes;
-        let names = causes.names();
-        self.shared.events.note_causes("halt", None, &names, text);
-    }
-
-    fn count(&self, counted: &CauseCount, causes: Causes) -> Value {
-        json!({
-            "cause": counted.cause.names().join(""), "count": counted.count,
-            "last_s": counted.began.since(self.began).seconds(), "stands": causes.has(counted.cause),
-            "latches": Causes::LATCHED.has(counted.cause),
-        })
-    }
-
-    fn status(&mut self, now: Time) -> Value {
-        let attached = self.shared.plugs.attached();
-        let mut wires: Vec<Value> = self
-            .wires
-            .iter()
-            .map(|w| status::wire(w, &mut self.rates, now))
-            .collect();
-        let mut taps: Vec<Value> = self.taps.iter().map(|t| status::tap(t, now)).collect();
-        let mut layers = status::layers(&self.records.lock().expect("nobody panics holding the records"));
-        for a in &attached {
-            layers.push(status::attached(a));
-            for (index, output) in a.plug.outputs.iter().enumerate() {
-                let Some(reader) = a.page.reader(index, output.kind) else {
-                    continue;
-                };
-                let watched = Watched {
-                    name: output.name.clone(),
-                    unit: output.unit.clone(),
-                    reader,
-                };
-                wires.push(status::wire(&watched, &mut self.rates, now));
-            }
-            for t in &a.taps {
-                let watched = WatchedTap {
-                    how: t.tap.how,
-                    from: t.tap.from.clone(),
-                    to: t.tap.to.clone(),
-                    time_constant: t.tap.time_constant,
-                    reader: t.reader.clone(),
-                    gauge: t.gauge.clone(),
-                };
-                taps.push(status::tap(&watched, now));
-            }
-        }
-        self.rates.keep_only(&wires);
-        let (causes, since) = self.shared.halt.decided();
-        let events = self.shared.events.after(0);
-        let newest: Vec<_> = events.iter().rev().take(50).rev().collect();
-        let mut status = json!({
-            "creature": self.shared.name, "pid": std::process::id(),
-            "time_s": now.since(self.began).seconds(), "graph_version": self.shared.plugs.version(),
-            "mode": self.mode, "notes": self.notes,
-            "halt": {
-                "halted": causes != Causes::NONE, "causes": causes.names(),
-                "since_s": since.since(self.began).seconds(), "latched": causes.has(Causes::LATCHED),
-                "counts": self.shared.halt.counts().iter().map(|c| self.count(c, causes)).collect::<Vec<_>>(),
-            },
-            "wires": wires, "taps": taps, "layers": layers, "events": newest,
-            "real_time_allocations": alloc::broken(),
-        });
-        let view = self.view.lock().expect("nobody panics holding the view").clone();
-        if let (Some(status), Value::Object(view)) = (status.as_object_mut(), view) {
-            status.extend(view);
-        }
-        status
-    }
 }

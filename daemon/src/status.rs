@@ -2,7 +2,7 @@
 //!
 //! Must never touch a real-time thread: it reads cells, counters and sample rings like anybody else.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, VecDeque};
 
 use hdrhistogram::Histogram;
 use ipc::clock::{self, Span, Time};
@@ -53,7 +53,17 @@ pub struct Record {
     woke: Option<(Time, Time)>,
     /// Counters at the last look, to notice what is new.
     before: BeatCounts,
+    /// Longest latency of each of the last seconds, oldest first, in microseconds.
+    trail: VecDeque<f64>,
+    /// Longest latency since the last second ended, and how many looks ago that was.
+    longest: (f64, u32),
 }
+
+/// How many seconds back the trail of latencies goes.
+const TRAIL_MAX: usize = 60;
+
+/// Looks of the watcher in a second.
+const LOOKS: u32 = 10;
 
 impl Record {
     /// An empty record of the thread whose samples these are.
@@ -77,6 +87,8 @@ impl Record {
             period_error: histogram(),
             woke: None,
             before: BeatCounts::default(),
+            trail: VecDeque::new(),
+            longest: (0.0, 0),
         }
     }
 
@@ -85,6 +97,7 @@ impl Record {
         while let Ok(sample) = self.samples.pop() {
             self.latency.saturating_record(sample.latency.0.max(1));
             self.step.saturating_record(sample.step.0.max(1));
+            self.longest.0 = self.longest.0.max(sample.latency.0 as f64 / 1e3);
             self.response.saturating_record(sample.response.0.max(1));
             let woke = sample.due + sample.latency;
             if let Some((due, before)) = self.woke.replace((sample.due, woke)) {
@@ -92,6 +105,7 @@ impl Record {
                 self.period_error.saturating_record(error.max(1));
             }
         }
+        self.keep_trail();
         let now = self.gauge.counts();
         let before = std::mem::replace(&mut self.before, now);
         if now.identity_faults > before.identity_faults {
@@ -111,6 +125,18 @@ impl Record {
                 now.missed_in_row_max
             )
         })
+    }
+
+    /// Keeps the longest latency of each second.
+    fn keep_trail(&mut self) {
+        self.longest.1 += 1;
+        if self.longest.1 == LOOKS {
+            if self.trail.len() == TRAIL_MAX {
+                self.trail.pop_front();
+            }
+            self.trail.push_back(self.longest.0);
+            self.longest = (0.0, 0);
+        }
     }
 
     /// Everything measured so far.
@@ -134,7 +160,8 @@ impl Record {
             "identity_faults": counts.identity_faults, "lost_samples": counts.lost_samples, "attached": false,
             "latency_us": percentiles(&self.latency), "step_us": percentiles(&self.step),
             "response_us": percentiles(&self.response), "period_error_us": percentiles(&self.period_error),
-            "histogram": bars(&self.latency),
+            "histogram": bars(&self.latency), "step_histogram": bars(&self.step),
+            "latency_sum_us": sum(&self.latency), "step_sum_us": sum(&self.step), "trail_us": self.trail,
         })
     }
 }
@@ -150,6 +177,11 @@ fn wake(wake: Wake) -> String {
 fn percentiles(h: &Histogram<u64>) -> Value {
     let us = |q: f64| h.value_at_quantile(q) as f64 / 1e3;
     json!({ "p50": us(0.5), "p99": us(0.99), "p999": us(0.999), "max": h.max() as f64 / 1e3 })
+}
+
+/// Sum of everything in a histogram, in microseconds.
+fn sum(h: &Histogram<u64>) -> f64 {
+    h.mean() * h.len() as f64 / 1e3
 }
 
 /// Bars of a histogram: upper bound in microseconds, doubling from 1, and count.
@@ -237,6 +269,8 @@ pub struct WatchedTap {
     pub to: String,
     /// Its time constant.
     pub time_constant: Span,
+    /// Its layer and that layer's level.
+    pub layer: (String, u8),
     /// Its messages.
     pub reader: Reader,
     /// Its counters.
@@ -254,7 +288,7 @@ pub fn tap(t: &WatchedTap, now: Time) -> Value {
     let remaining = window.map_or(Span::ZERO, |w| w.remaining(now));
     let counts = t.gauge.counts();
     json!({
-        "from": t.from, "to": t.to, "kind": t.how, "time_constant_ms": t.time_constant.as_millis_f64(),
+        "from": t.from, "to": t.to, "kind": t.how, "layer": t.layer.0, "level": t.layer.1, "time_constant_ms": t.time_constant.as_millis_f64(),
         "holds": remaining > Span::ZERO, "remaining_ms": remaining.as_millis_f64(),
         "delivered": counts.delivered, "rejected": counts.rejected, "faults": counts.faults,
     })

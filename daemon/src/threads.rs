@@ -9,6 +9,7 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use afsm::layer::RunningLayer;
+use afsm::trace::trace;
 use ipc::clock::{self, Span, Time};
 use ipc::wiring::creature::{PRIORITY_MAX, Policy};
 use rtrb::Consumer;
@@ -19,6 +20,7 @@ use crate::executor::{self, Beating, Beats, Refusal};
 use crate::halt::HaltChannel;
 use crate::machine::Station;
 use crate::motor::Motor;
+use crate::recorder::Feed;
 use crate::status::Record;
 use crate::watchdog::Watchdog;
 
@@ -96,6 +98,8 @@ pub struct Crew {
     pub beating: Vec<Beating>,
     /// Where each layer, the watchdog and the motor unit are measured; layers first, in the creature's order.
     pub records: Vec<Record>,
+    /// What each layer and the motor unit trace, in that order.
+    pub feeds: Vec<Feed>,
     /// What the host refused.
     pub refusals: Vec<Refusal>,
     start: Start,
@@ -107,6 +111,7 @@ impl Crew {
         Crew {
             beating: Vec::new(),
             records: Vec::new(),
+            feeds: Vec::new(),
             refusals: Vec::new(),
             start,
         }
@@ -119,10 +124,15 @@ impl Crew {
     pub fn start_layers(&mut self, shared: Vec<plan::Shared>, stations: Vec<Station>) -> io::Result<()> {
         let mut stations: Vec<Option<Station>> = stations.into_iter().map(Some).collect();
         let mut records: Vec<(usize, Record)> = Vec::new();
+        let mut feeds: Vec<(usize, Feed)> = Vec::new();
         for plan::Shared { plan, layers } in shared {
             let (mut running, mut gauges, mut specs) = (Vec::new(), Vec::new(), Vec::new());
             for &index in &layers {
-                let station = stations[index].take().expect("a layer is on one thread");
+                let mut station = stations[index].take().expect("a layer is on one thread");
+                let (registers, outlets) = station.running.ports();
+                let (tracer, trace) = trace(station.spec.period, registers, outlets);
+                station.running.trace(tracer);
+                feeds.push((index, Feed::new(trace, station.gauge.clone())));
                 running.push(station.running);
                 gauges.push(station.gauge);
                 specs.push(station.spec);
@@ -140,6 +150,8 @@ impl Crew {
         }
         records.sort_by_key(|(index, _)| *index);
         self.records.extend(records.into_iter().map(|(_, record)| record));
+        feeds.sort_by_key(|(index, _)| *index);
+        self.feeds.extend(feeds.into_iter().map(|(_, feed)| feed));
         Ok(())
     }
 
@@ -147,8 +159,12 @@ impl Crew {
     ///
     /// # Errors
     /// When the host refuses the thread.
-    pub fn start_motor(&mut self, motor: Motor, gauge: Arc<BeatGauge>) -> io::Result<()> {
+    pub fn start_motor(&mut self, mut motor: Motor, gauge: Arc<BeatGauge>) -> io::Result<()> {
         let period = motor.period();
+        let (inputs, sensors) = motor.ports();
+        let (tracer, trace) = trace(period, inputs, sensors);
+        motor.trace(tracer);
+        self.feeds.push(Feed::new(trace, gauge.clone()));
         self.own("motor", period, PRIORITY_MAX, MotorBeats(motor), gauge)
     }
 

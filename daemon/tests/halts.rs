@@ -12,6 +12,7 @@ use afsm::module::{Beat, Module};
 use daemon::feeder::Fed;
 use daemon::gate::Causes;
 use daemon::machine::{Machine, kinds};
+use daemon::recorder;
 use daemon::running::{self, Running};
 use ipc::wire::iceoryx::Domain;
 use ipc::wiring::directory::output_ports;
@@ -64,7 +65,8 @@ fn start(name: &str, layer: &str) -> Running {
         .own(name, output_ports(&creature).count())
         .expect("a name of its own");
     let machine = Machine::new(creature, &kinds, owned.page().clone(), None);
-    running::start(name, machine, owned, domain, None, Fed::default()).expect("threads")
+    let settings = recorder::Settings::default();
+    running::start(name, machine, owned, domain, &settings, None, Fed::default()).expect("threads")
 }
 
 fn until(running: &Running, what: &str, there: impl Fn(Causes) -> bool) {

@@ -19,7 +19,7 @@ fn ask(creature: &str, request: &Request) -> Result<Reply, String> {
     }
 }
 
-fn ask_status(creature: &str) -> Result<Value, String> {
+pub(crate) fn ask_status(creature: &str) -> Result<Value, String> {
     match ask(creature, &Request::Status)? {
         Reply::Status(status) => Ok(status),
         other => Err(format!(
@@ -172,8 +172,13 @@ pub(crate) fn events(creature: &str, as_json: bool) -> Done {
     Ok(())
 }
 
+/// Asks for something to be done.
+pub(crate) fn send(creature: &str, request: &Request) -> Done {
+    ask(creature, request).map(drop)
+}
+
 pub(crate) fn order(creature: &str, as_json: bool, request: Request, said: &str) -> Done {
-    ask(creature, &request)?;
+    send(creature, &request)?;
     if as_json {
         println!("{}", json!({ "done": said }));
     } else {

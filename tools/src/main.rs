@@ -5,15 +5,20 @@ mod compete;
 mod doctor;
 mod example;
 mod live;
+mod manual;
 mod modules;
 mod new;
 mod paint;
 mod picture;
 mod prefixes;
+mod record;
+mod replay;
 mod test;
+mod top;
 mod watch;
+mod why;
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
@@ -26,7 +31,9 @@ use ipc::control::Request;
     version,
     after_help = "Examples:\n  \
     subsumectl status                     what the creature does\n  \
-    subsumectl watch turn.heading         messages of a wire as they come\n  \
+    subsumectl top                        the same, live\n  \
+    subsumectl watch turn.rate            messages of a wire as they come\n  \
+    subsumectl why body.forward           what the wheels are told, and why\n  \
     subsumectl halt; subsumectl reset     emergency stop, and its end\n  \
     subsumectl --creature jerry status    another instance\n  \
     subsumectl check mine.toml            every error of a creature file\n  \
@@ -38,9 +45,9 @@ use ipc::control::Request;
     Status: 0 done; 1 not done (no daemon, refused, an expectation not met); 2 bad input."
 )]
 struct Options {
-    /// The running creature to speak to
-    #[arg(long, global = true, default_value = "allen", value_name = "NAME")]
-    creature: String,
+    /// The running creature to speak to; allen if not given
+    #[arg(long, global = true, value_name = "NAME")]
+    creature: Option<String>,
     /// Machine-readable output
     #[arg(long, global = true)]
     json: bool,
@@ -52,6 +59,12 @@ struct Options {
 enum Command {
     /// Layers with beats, overruns and latencies; who is attached; halt state
     Status,
+    /// The same on the whole terminal, live: layers, taps, wires, halt; keys to sort, filter, halt and reset
+    #[command(
+        after_help = "Examples:\n  subsumectl top\n  NO_COLOR=1 subsumectl --creature jerry top\n\n\
+        Keys: q quit, s sort, / filter, f freeze, h halt, r reset, ? help"
+    )]
+    Top,
     /// Every wire with type, rate, age and newest value
     Wires,
     /// Messages of a wire as they come, until Ctrl-C
@@ -67,6 +80,51 @@ enum Command {
     },
     /// What happened: layers that came and went, halts, overruns
     Events,
+    /// The chain behind the newest message of a wire, back to the sensors
+    #[command(after_help = "Examples:\n  \
+        subsumectl why body.forward                       what the wheels are told, and why\n  \
+        subsumectl why turn.heading --from f.mcap --at -2  two seconds before a recording's end")]
+    Why {
+        /// The wire, such as turn.heading, or an input of the body, such as body.forward
+        wire: String,
+        #[command(flatten)]
+        when: When,
+    },
+    /// For every tapped port who holds it, and who gets it next
+    #[command(after_help = "Examples:\n  subsumectl holders\n  subsumectl holders --from f.mcap --at 12.5")]
+    Holders {
+        #[command(flatten)]
+        when: When,
+    },
+    /// Records all wires, taps, halts, overruns and the log into an MCAP file, until Ctrl-C
+    #[command(after_help = "Examples:\n  \
+        subsumectl record -o run.mcap --seconds 60     one minute from now\n  \
+        subsumectl record -o halt.mcap --ring 60s      the last minute before the next halt\n  \
+        subsumectl record -o now.mcap --past           what the flight recorder holds, at once\n\n\
+        The daemon's flight recorder keeps the last minute of every halt by itself: see subsumed --help.")]
+    Record {
+        /// The file to write
+        #[arg(short, long, value_name = "FILE")]
+        output: PathBuf,
+        /// Stop after this many seconds
+        #[arg(long, value_name = "N")]
+        seconds: Option<f64>,
+        /// Keep only the newest stretch, such as 60s, and stop when the body halts
+        #[arg(long, value_name = "SPAN", value_parser = ipc::clock::Span::parse)]
+        ring: Option<ipc::clock::Span>,
+        /// What the flight recorder holds already, and no more
+        #[arg(long, conflicts_with_all = ["seconds", "ring"])]
+        past: bool,
+    },
+    /// Runs a recording through the layers again and says where the outputs differ
+    #[command(after_help = "Examples:\n  \
+        subsumectl replay run.mcap                        none, for the build that recorded it\n  \
+        subsumectl replay run.mcap --creature mine.toml   what another creature file would have done\n\n\
+        Status: 0 no difference; 1 differences; 2 not a recording, or a bad creature file.")]
+    Replay {
+        /// The recording
+        file: PathBuf,
+    },
     /// Emergency stop; holds until reset
     Halt,
     /// Ends an emergency stop
@@ -85,6 +143,23 @@ enum Command {
         /// When to use colours
         #[arg(long, value_enum, default_value_t, value_name = "WHEN")]
         color: paint::Color,
+    },
+    /// Prints completions for a shell
+    #[command(after_help = "Examples:\n  \
+        subsumectl completions bash > /usr/share/bash-completion/completions/subsumectl\n  \
+        subsumectl completions zsh --program subsumed > _subsumed")]
+    Completions {
+        /// The shell
+        shell: clap_complete::Shell,
+        /// Whose command line
+        #[arg(long, value_enum, default_value = "subsumectl")]
+        program: manual::Program,
+    },
+    /// Writes the manual pages of subsumectl and subsumed into a folder
+    #[command(after_help = "Example: subsumectl man target/man && man -l target/man/subsumectl.1")]
+    Man {
+        /// The folder; made if it is not there
+        folder: PathBuf,
     },
     /// Prints the JSON Schema of creature files, for editors
     Schema,
@@ -157,6 +232,25 @@ enum Command {
     },
 }
 
+/// Where to look, and when.
+#[derive(clap::Args, Debug)]
+struct When {
+    /// A recording instead of the running creature
+    #[arg(long, value_name = "FILE")]
+    from: Option<PathBuf>,
+    /// The moment, in seconds since the creature began; negative counts back from the end
+    #[arg(long, value_name = "T", allow_negative_numbers = true)]
+    at: Option<f64>,
+}
+
+impl From<When> for why::When {
+    fn from(when: When) -> why::When {
+        why::When {
+            from: when.from,
+            at: when.at,
+        }
+    }
+}
 /// Counts what real-time threads allocate where this program has some (`latency`).
 #[global_allocator]
 static ALLOCATOR: daemon::alloc::Counting = daemon::alloc::Counting;
@@ -169,11 +263,31 @@ fn main() -> ExitCode {
     let gone = std::sync::Arc::new(std::sync::atomic::AtomicBool::new(true));
     let _ = signal_hook::flag::register_conditional_default(signal_hook::consts::SIGPIPE, gone);
     let options = Options::parse();
-    let (creature, json) = (options.creature.as_str(), options.json);
+    let (creature, json) = (options.creature.as_deref().unwrap_or("allen"), options.json);
     let done = match options.command {
         Command::Status => live::status(creature, json),
+        Command::Top => top::top(creature),
+        Command::Completions { shell, program } => {
+            manual::completions(shell, program);
+            Ok(())
+        }
+        Command::Man { folder } => manual::pages(&folder),
         Command::Wires => live::wires(creature, json),
         Command::Watch { wire, count, seconds } => watch::watch(creature, &wire, json, count, seconds),
+        Command::Why { wire, when } => why::why(creature, &wire, &when.into(), json),
+        Command::Holders { when } => why::holders(creature, &when.into(), json),
+        Command::Record {
+            output,
+            seconds,
+            ring,
+            past,
+        } => {
+            let seconds = if past { Some(0.0) } else { seconds };
+            record::record(creature, &output, json, &record::Wanted { seconds, ring, past })
+        }
+        Command::Replay { file } => {
+            return replay::replay(&file, options.creature.as_deref().map(Path::new), json);
+        }
         Command::Events => live::events(creature, json),
         Command::Halt => live::order(
             creature,

@@ -1,6 +1,6 @@
 //! Bodies: what joins wires to the world.
 //!
-//! A body is two things that meet in a [`link`]: the [`motor`](crate::motor) unit, which beats on a real-time
+//! A body is two things that meet in a [`mod@link`]: the [`motor`](crate::motor) unit, which beats on a real-time
 //! thread and moves messages between the creature's wires and the link, and a [`World`], which may take
 //! its time: a simulation, or a driver. The two ends lie in one process, or in two ([`process`], [`remote`]).
 //!

@@ -7,8 +7,10 @@ use std::time::Duration;
 
 use rustix::io::Errno;
 use rustix::mm::{MlockAllFlags, mlockall};
-use rustix::process::{Resource, Rlimit, setrlimit};
-use rustix::thread::{CpuSet, sched_getaffinity, sched_setaffinity, set_current_timer_slack};
+use rustix::process::{Resource, Rlimit, getrlimit, setrlimit};
+use rustix::thread::{
+    CapabilitySet, CpuSet, capabilities, sched_getaffinity, sched_setaffinity, set_current_timer_slack,
+};
 use thread_priority::{
     DeadlineFlags, NormalThreadSchedulePolicy, RealtimeThreadSchedulePolicy, ScheduleParams, ThreadPriority,
     ThreadSchedulePolicy, set_thread_priority_and_policy, thread_native_id, thread_schedule_policy,
@@ -49,6 +51,16 @@ pub fn lock_memory() -> Result<(), Refusal> {
         grants: "granted by CAP_IPC_LOCK, by LimitMEMLOCK=infinity in the unit, or by `ulimit -l unlimited`"
             .into(),
     })
+}
+
+/// How much memory this process may lock; `None` if there is no limit.
+pub fn lockable_bytes() -> Option<u64> {
+    let free = capabilities(None).is_ok_and(|c| c.effective.contains(CapabilitySet::IPC_LOCK));
+    if free {
+        None
+    } else {
+        getrlimit(Resource::Memlock).current
+    }
 }
 
 /// Sees to it that a runaway real-time thread ends the process instead of starving the host.

@@ -171,7 +171,7 @@ impl Guests {
         };
         let (running, hand) = assemble(layer, &self.kinds, &page, 0, &neighbours, &[], creature.0.seed);
         for tap in &plug.taps {
-            let joining = self.policy.join(number, &plug, tap, &page);
+            let joining = self.policy.join(number, &plug, tap, &page, Arc::default());
             let taken = hands[joining.station].commands.push(joining.command);
             assert!(taken.is_ok(), "every command is taken up at once");
             let place = match tap.how {

@@ -45,6 +45,8 @@ impl Stage {
             .args(arguments)
             .env("SUBSUMED_DOMAIN", &self.domain)
             .env("SUBSUMED_RUN", &self.run)
+            .env_remove("STATE_DIRECTORY")
+            .env("XDG_STATE_HOME", &self.run)
             .envs(variables.iter().copied())
             .stdout(Stdio::null())
             .stderr(Stdio::piped())

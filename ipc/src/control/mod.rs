@@ -5,7 +5,7 @@
 //!
 //! Must never carry wire messages: those go through shared memory.
 
-use std::io::{self, BufRead, BufReader, Write};
+use std::io::{self, BufRead, BufReader, Read, Write};
 use std::os::unix::net::UnixStream;
 use std::time::Duration;
 
@@ -90,6 +90,16 @@ pub enum Request {
     Halt,
     /// Ends an emergency stop.
     Reset,
+    /// Records what happens. The answer is [`Reply::Recording`], followed by the bytes of an MCAP file until the
+    /// daemon closes the connection; the caller ends the recording by closing its own direction.
+    Record {
+        /// Whether to begin with what the flight recorder holds.
+        past: bool,
+        /// How long to record, in seconds; 0 for what is there already, none until the caller ends it.
+        seconds: Option<f64>,
+        /// Keep only the newest stretch, until the body halts.
+        ring: Option<Span>,
+    },
     /// Joins a layer for as long as this connection lasts.
     Plug(Plug),
     /// The joined layer leaves of its own will; no answer is waited for.
@@ -162,6 +172,8 @@ pub enum Reply {
     Status(serde_json::Value),
     /// Events, oldest first.
     Events(Vec<Event>),
+    /// A recording follows, see [`Request::Record`].
+    Recording,
     /// Done.
     Done,
     /// The layer is attached.
@@ -288,6 +300,11 @@ impl Connection {
         self.send(request)?;
         self.receive()?
             .ok_or_else(|| io::Error::new(io::ErrorKind::UnexpectedEof, "the daemon closed the connection"))
+    }
+
+    /// What the daemon sends from here on, after [`Reply::Recording`].
+    pub fn rest(self) -> impl Read {
+        self.reader
     }
 
     fn is_overdue(&self) -> bool {

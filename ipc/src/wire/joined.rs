@@ -61,12 +61,26 @@ impl Room {
 /// Counters of a tap that other threads may look at.
 #[derive(Debug, Default)]
 pub struct TapGauge {
+    number: u16,
     delivered: AtomicU64,
     rejected: AtomicU64,
     faults: AtomicU64,
 }
 
 impl TapGauge {
+    /// The counters of the tap that those who trace know by `number`.
+    pub fn numbered(number: u16) -> TapGauge {
+        TapGauge {
+            number,
+            ..TapGauge::default()
+        }
+    }
+
+    /// The number that those who trace know the tap by; 0 if it was given none.
+    pub fn number(&self) -> u16 {
+        self.number
+    }
+
     /// What was counted so far.
     pub fn counts(&self) -> TapCounts {
         // Relaxed: numbers to look at; nothing hangs on their order.
@@ -81,6 +95,32 @@ impl TapGauge {
 /// Counts one more. Only the thread that owns the port counts, so load and store need not be one step.
 fn count(counter: &AtomicU64) {
     counter.store(counter.load(Ordering::Relaxed) + 1, Ordering::Relaxed);
+}
+
+/// What became of a message that a port looked at.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Fate {
+    /// It took effect.
+    Delivered,
+    /// A tap's window kept it out.
+    Rejected,
+    /// It was no message: not a number, out of range, or stamped in the future.
+    Fault,
+}
+
+/// A message of a tap that a port took in at its last look.
+#[derive(Clone, Copy, Debug)]
+pub struct TapLook<'t> {
+    /// The tap, by the number of its gauge.
+    pub tap: u16,
+    /// The message's number on its wire.
+    pub number: u64,
+    /// When it was written, as the tap's window has it; of a faulty message that of the one before.
+    pub stamp: Time,
+    /// Its words; of a faulty message those of the one before.
+    pub words: &'t [f64],
+    /// What became of it.
+    pub fate: Fate,
 }
 
 /// What was counted at one tap.
@@ -103,6 +143,8 @@ pub(super) struct Joined {
     pub(super) words: Words,
     /// Whether its newest message came in at the last look.
     pub(super) fresh: bool,
+    /// What became of the message that the last look took in, if it took one in.
+    pub(super) fate: Option<Fate>,
     /// Told to go; stays until its window has run out, so that nothing rejected comes back to life.
     pub(super) leaving: bool,
 }
@@ -117,6 +159,7 @@ impl Joined {
             window: None,
             words: [0.0; WORDS_MAX],
             fresh: false,
+            fate: None,
             leaving: false,
         }
     }
@@ -125,6 +168,7 @@ impl Joined {
     #[inline]
     pub(super) fn look(&mut self, now: Time, limits: Option<&Limits>) {
         self.fresh = false;
+        self.fate = None;
         if !self.leaving && self.end.reader.changed(self.seen) {
             self.take_in(now, limits);
         }
@@ -142,6 +186,7 @@ impl Joined {
             Some(stamp) if stamp >= newest && limits.is_none_or(|l| l.accept(&words)) => stamp,
             _ => {
                 count(&self.end.gauge.faults);
+                self.fate = Some(Fate::Fault);
                 return;
             }
         };
@@ -151,6 +196,7 @@ impl Joined {
         });
         self.words = words;
         self.fresh = true;
+        self.fate = Some(Fate::Rejected);
     }
 
     /// Counts a message of the wire that this tap's window kept out.
@@ -159,8 +205,21 @@ impl Joined {
     }
 
     /// Counts a message of the tap that took effect.
-    pub(super) fn take_effect(&self) {
+    pub(super) fn take_effect(&mut self) {
         count(&self.end.gauge.delivered);
+        self.fate = Some(Fate::Delivered);
+    }
+
+    /// What the last look took in.
+    pub(super) fn look_taken(&self) -> Option<TapLook<'_>> {
+        let fate = self.fate?;
+        Some(TapLook {
+            tap: self.end.gauge.number,
+            number: self.seen,
+            stamp: self.window.map_or(Time::ZERO, |w| w.stamp),
+            words: &self.words[..self.end.reader.kind().words()],
+            fate,
+        })
     }
 
     pub(super) fn state(&self) -> TapState {

@@ -14,7 +14,7 @@ pub mod register;
 mod sync;
 
 pub use cell::{LAYOUT, Reading};
-pub use joined::{AHEAD_MAX, Plug, Room, TAPS_MAX, TapCounts, TapEnd, TapGauge, TapState};
+pub use joined::{AHEAD_MAX, Fate, Plug, Room, TAPS_MAX, TapCounts, TapEnd, TapGauge, TapLook, TapState};
 pub use outlet::{Outlet, OutputCounts};
 pub use page::{Page, Reader, WIRES_MAX, Writer};
 pub use register::{InputCounts, Limits, Register};

@@ -9,10 +9,10 @@
 
 use std::sync::Arc;
 
-use super::joined::{Joined, Plug, TapEnd, TapGauge, TapState, join, release, sweep, window_of};
+use super::joined::{Joined, Plug, TapEnd, TapGauge, TapLook, TapState, join, release, sweep, window_of};
 use super::page::Writer;
 use crate::clock::Time;
-use crate::message::{Payload, WORDS_MAX, Words};
+use crate::message::{Kind, Payload, WORDS_MAX, Words};
 use crate::tap::{self, Window};
 
 /// What was counted at one output.
@@ -147,6 +147,21 @@ impl Outlet {
             tap.reject();
         }
         false
+    }
+
+    /// The words of the message that waits for the end of the beat, or of the last one that did.
+    pub fn words(&self) -> &Words {
+        &self.words
+    }
+
+    /// The kind of message on the wire.
+    pub fn kind(&self) -> Kind {
+        self.writer.kind()
+    }
+
+    /// The messages of inhibitors that the last [`Outlet::commit`] took in, for those who trace.
+    pub fn tap_looks(&self) -> impl Iterator<Item = TapLook<'_>> {
+        self.taps.iter().filter_map(Joined::look_taken)
     }
 
     /// What was counted so far.

@@ -9,7 +9,9 @@
 
 use std::sync::Arc;
 
-use super::joined::{Joined, Plug, TapEnd, TapGauge, TapState, join, plausible, release, sweep, window_of};
+use super::joined::{
+    Fate, Joined, Plug, TapEnd, TapGauge, TapLook, TapState, join, plausible, release, sweep, window_of,
+};
 use super::page::Reader;
 use crate::clock::Time;
 use crate::message::{Kind, WORDS_MAX, Words};
@@ -62,6 +64,7 @@ pub struct Register {
     /// Whether a message was delivered since the last gather.
     pending: bool,
     arrived: bool,
+    looked: Option<(u64, Fate)>,
     counts: InputCounts,
     /// Where a message of the existing wire is looked at before it is let in.
     incoming: Words,
@@ -90,6 +93,7 @@ impl Register {
             held: (Time::ZERO, [0.0; WORDS_MAX]),
             pending: false,
             arrived: false,
+            looked: None,
             counts: InputCounts::default(),
             incoming: [0.0; WORDS_MAX],
         }
@@ -140,9 +144,15 @@ impl Register {
                 self.deliver(stamp, From::Wire);
             } else {
                 self.counts.rejected += 1;
+                self.reject_looked();
             }
         }
         sweep(&mut self.taps, now, gone);
+    }
+
+    /// A suppressor kept the existing wire's message out.
+    fn reject_looked(&mut self) {
+        self.looked = self.looked.map(|(number, _)| (number, Fate::Rejected));
     }
 
     /// Lets in the newest message of the series, in a beat in which at least one tap spoke. `original` is the
@@ -158,6 +168,7 @@ impl Register {
                 newest = Some((stamp, From::Wire));
             } else {
                 self.counts.rejected += 1;
+                self.reject_looked();
             }
         }
         for k in 0..self.taps.len() {
@@ -210,11 +221,16 @@ impl Register {
     /// then those incoming.
     #[inline]
     fn newest_original(&mut self, now: Time) -> Option<Time> {
+        self.looked = None;
         let (number, stamp) = self.wire.as_ref()?.take_newer(self.seen, &mut self.incoming)?;
         self.seen = number;
         match plausible(stamp, now) {
-            Some(stamp) if self.limits.accept(&self.incoming) => Some(stamp),
+            Some(stamp) if self.limits.accept(&self.incoming) => {
+                self.looked = Some((number, Fate::Delivered));
+                Some(stamp)
+            }
             _ => {
+                self.looked = Some((number, Fate::Fault));
                 self.counts.faults += 1;
                 None
             }
@@ -267,6 +283,17 @@ impl Register {
     #[inline]
     pub fn arrived(&self) -> bool {
         self.arrived
+    }
+
+    /// The message of the existing wire that the last [`Register::gather`] took in, by its number, and what
+    /// became of it; for those who trace.
+    pub fn looked(&self) -> Option<(u64, Fate)> {
+        self.looked
+    }
+
+    /// The messages of taps that the last [`Register::gather`] took in, for those who trace.
+    pub fn tap_looks(&self) -> impl Iterator<Item = TapLook<'_>> {
+        self.taps.iter().filter_map(Joined::look_taken)
     }
 
     /// Forgets the message held: what a reset line does.

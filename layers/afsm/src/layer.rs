@@ -13,10 +13,12 @@ use std::ops::Range;
 use ipc::clock::Time;
 use ipc::message::Words;
 use ipc::wire::{Outlet, Register, TapEnd};
+use ipc::wiring::creature::How;
 use rtrb::{Consumer, Producer};
 
 use crate::kind::ModuleKind;
 use crate::module::{Beat, Module};
+use crate::trace::Tracer;
 
 /// A change to a running layer's taps, made by a thread that is not real-time.
 #[derive(Debug)]
@@ -60,6 +62,7 @@ pub struct RunningLayer {
     outlets: Vec<Outlet>,
     commands: Consumer<Command>,
     returned: Producer<TapEnd>,
+    tracer: Option<Tracer>,
 }
 
 impl std::fmt::Debug for RunningLayer {
@@ -80,6 +83,7 @@ impl RunningLayer {
             outlets: Vec::new(),
             commands: command_out,
             returned: return_in,
+            tracer: None,
         };
         (
             layer,
@@ -136,6 +140,16 @@ impl RunningLayer {
             "an order names every module once"
         );
         self.order = order;
+    }
+
+    /// Traces every beat from now on.
+    pub fn trace(&mut self, tracer: Tracer) {
+        self.tracer = Some(tracer);
+    }
+
+    /// How many registers and outlets there are.
+    pub fn ports(&self) -> (usize, usize) {
+        (self.registers.len(), self.outlets.len())
     }
 
     /// Puts every module back in its initial state and empties its registers: the layer begins anew.
@@ -201,11 +215,19 @@ impl RunningLayer {
 
     /// Writes a message on the n-th output at once, as though its module emitted it; see [`Outlet::put`].
     pub fn put(&mut self, output: usize, now: Time, words: &Words) -> bool {
-        self.outlets[output].put(now, words, |end| give_back(&mut self.returned, end))
+        let outlet = &mut self.outlets[output];
+        let wrote = outlet.put(now, words, |end| give_back(&mut self.returned, end));
+        if let Some(tracer) = &mut self.tracer {
+            trace_outlet(tracer, output, outlet, Some((wrote, words)));
+        }
+        wrote
     }
 
     /// First half of a beat: takes up commands, looks at every register, steps every module.
     pub fn step(&mut self, now: Time) {
+        if let Some(tracer) = &mut self.tracer {
+            tracer.begin(now);
+        }
         self.take_up();
         for &index in &self.order {
             let Seat {
@@ -234,22 +256,38 @@ impl RunningLayer {
                 outputs: &mut self.outlets[outputs.clone()],
             });
         }
+        if let Some(tracer) = &mut self.tracer {
+            trace_registers(tracer, &self.registers);
+        }
     }
 
     /// Second half of a beat: writes what was emitted, stamped `now`, unless inhibited.
     pub fn commit(&mut self, now: Time) {
-        for outlet in &mut self.outlets {
-            outlet.commit(now, |end| give_back(&mut self.returned, end));
+        for output in 0..self.outlets.len() {
+            self.commit_one(output, now);
+        }
+        if let Some(tracer) = &mut self.tracer {
+            tracer.end(now);
         }
     }
 
     /// Writes what was emitted on the n-th output, as [`RunningLayer::commit`] does on all of them. Says whether
     /// it wrote.
     pub fn commit_one(&mut self, output: usize, now: Time) -> bool {
-        self.outlets[output].commit(now, |end| give_back(&mut self.returned, end))
+        let outlet = &mut self.outlets[output];
+        let staged = outlet.is_staged();
+        let wrote = outlet.commit(now, |end| give_back(&mut self.returned, end));
+        if let Some(tracer) = &mut self.tracer {
+            let words = *outlet.words();
+            trace_outlet(tracer, output, outlet, staged.then_some((wrote, &words)));
+        }
+        wrote
     }
 
     fn obey(&mut self, command: Command) {
+        if let Some(tracer) = &mut self.tracer {
+            trace_command(tracer, &command);
+        }
         let refused = match command {
             Command::Suppress(input, end) if input < self.registers.len() => {
                 self.connect_reset(input);
@@ -277,6 +315,45 @@ impl RunningLayer {
             seat.reset = true;
         }
     }
+}
+
+/// Traces what the registers took in at this beat.
+pub fn trace_registers(tracer: &mut Tracer, registers: &[Register]) {
+    for (slot, register) in registers.iter().enumerate() {
+        if let Some((number, fate)) = register.looked() {
+            tracer.saw(slot, number, fate);
+        }
+        register.tap_looks().for_each(|look| tracer.tap(&look));
+    }
+}
+
+/// Traces what an outlet's inhibitors said, and what became of its message, if it had one: whether it was written,
+/// and its words.
+fn trace_outlet(tracer: &mut Tracer, slot: usize, outlet: &Outlet, message: Option<(bool, &Words)>) {
+    outlet.tap_looks().for_each(|look| tracer.tap(&look));
+    match message {
+        Some((true, words)) => {
+            tracer.wrote(slot, outlet.counts().emitted, &words[..outlet.kind().words()]);
+        }
+        Some((false, _)) => tracer.dropped(slot),
+        None => {}
+    }
+}
+
+fn trace_command(tracer: &mut Tracer, command: &Command) {
+    let (slot, end, how) = match command {
+        Command::Suppress(slot, end) => (slot, end, How::Suppress),
+        Command::Inhibit(slot, end) => (slot, end, How::Inhibit),
+        Command::Release(plug) => return tracer.released(*plug),
+    };
+    tracer.joined(
+        *slot,
+        end.gauge.number(),
+        how,
+        end.level,
+        end.plug,
+        end.time_constant,
+    );
 }
 
 /// Hands a tap to the thread that may drop it. The ring has room for every tap there can be, so the tap is

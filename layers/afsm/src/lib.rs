@@ -13,6 +13,7 @@ pub mod module;
 pub mod port;
 pub mod process;
 pub mod random;
+pub mod trace;
 
 pub use kind::{Kinds, ModuleKind, Settings};
 pub use module::{Beat, Module};

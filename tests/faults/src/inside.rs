@@ -178,7 +178,16 @@ pub(crate) fn run(how: Break, seconds: f64) -> Result<(), String> {
     let owned = domain.own(CREATURE, cells).map_err(|e| e.to_string())?;
     let admission = Admission::of(&creature.outsiders)?;
     let machine = Machine::apart(creature, &kinds, owned.page().clone());
-    let running = running::start(CREATURE, machine, owned, domain, Some(BODY), Fed::default());
+    let settings = daemon::recorder::Settings::default();
+    let running = running::start(
+        CREATURE,
+        machine,
+        owned,
+        domain,
+        &settings,
+        Some(BODY),
+        Fed::default(),
+    );
     let running = running.map_err(|e| format!("starting threads: {e}"))?;
     let control = Control::open(CREATURE, running.shared.clone(), admission);
     let control = control.map_err(|e| format!("the control socket: {e}"))?;

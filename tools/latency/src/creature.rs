@@ -9,6 +9,7 @@ use daemon::admission::Admission;
 use daemon::control::{self, Control};
 use daemon::feeder::Fed;
 use daemon::machine::Machine;
+use daemon::recorder;
 use daemon::running::{self, Running};
 use ipc::clock::Span;
 use ipc::wire::iceoryx::Domain;
@@ -108,8 +109,9 @@ impl Alive {
             .own(&name, output_ports(&creature).count())
             .map_err(|e| e.to_string())?;
         let machine = Machine::new(creature, &modules::kinds(), owned.page().clone(), None);
-        let running =
-            running::start(&name, machine, owned, domain, None, Fed::default()).map_err(|e| e.to_string())?;
+        let settings = recorder::Settings::default();
+        let running = running::start(&name, machine, owned, domain, &settings, None, Fed::default())
+            .map_err(|e| e.to_string())?;
         let control = Control::open(&name, running.shared.clone(), admission)
             .map_err(|e| format!("the control socket: {e}"))?;
         // The beats of the first 200 ms warm the caches and are in nobody's interval.

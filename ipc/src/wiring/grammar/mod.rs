@@ -1,6 +1,6 @@
 //! The grammar of creature files: every table with every key, what it takes and what it means.
 //!
-//! Read twice: the reader ([`super::read`]) takes exactly these keys with exactly these ranges, and the
+//! Read twice: the reader takes exactly these keys with exactly these ranges, and the
 //! schema for editors ([`super::schema`]) is printed from them, so that neither can know a key that the other does not.
 //!
 //! Must never hold a rule that compares two values: those are the checker's.

@@ -1,0 +1,186 @@
+//! The watcher: an ordinary thread that looks at everything ten times a second, and tells it as the status.
+//!
+//! Must never touch a real-time thread, nor decide anything but who broke the policy.
+
+use std::collections::BTreeMap;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex};
+use std::thread::JoinHandle;
+use std::time::Duration;
+
+use ipc::clock::{self, Time};
+use serde_json::{Value, json};
+
+use crate::alloc;
+use crate::gate::Causes;
+use crate::halt::CauseCount;
+use crate::running::Shared;
+use crate::status::{self, Rates, Record, Watched, WatchedTap};
+
+/// Looks at everything ten times a second.
+pub(crate) struct Watcher {
+    /// What the daemon's threads share.
+    pub(crate) shared: Arc<Shared>,
+    /// When the daemon began.
+    pub(crate) began: Time,
+    /// Real time, or best effort.
+    pub(crate) mode: &'static str,
+    /// What the host refused.
+    pub(crate) notes: Vec<String>,
+    /// The creature's wires.
+    pub(crate) wires: Vec<Watched>,
+    /// The creature's taps.
+    pub(crate) taps: Vec<WatchedTap>,
+    /// What the threads measured.
+    pub(crate) records: Arc<Mutex<Vec<Record>>>,
+    /// What the world shows.
+    pub(crate) view: Arc<Mutex<Value>>,
+    /// How often each wire is written.
+    pub(crate) rates: Rates,
+    /// The causes at the last look.
+    pub(crate) causes: Causes,
+    /// What was counted of them then.
+    pub(crate) counts: Vec<CauseCount>,
+}
+
+impl Watcher {
+    /// Looks until told to `leave`.
+    ///
+    /// # Errors
+    /// When the host refuses the thread.
+    pub(crate) fn watch(mut self, leave: Arc<AtomicBool>) -> std::io::Result<JoinHandle<()>> {
+        std::thread::Builder::new().name("watcher".into()).spawn(move || {
+            while !leave.load(Ordering::Relaxed) {
+                self.look();
+                std::thread::sleep(Duration::from_millis(100));
+            }
+        })
+    }
+
+    fn look(&mut self) {
+        let now = clock::monotonic();
+        for record in self
+            .records
+            .lock()
+            .expect("nobody panics holding the records")
+            .iter_mut()
+        {
+            if let Some(text) = record.drain() {
+                self.shared.events.note("overrun", Some(&record.name), text);
+            }
+        }
+        self.note_halts();
+        self.shared.plugs.police(now);
+        let status = self.status(now);
+        self.shared.set_status(status);
+    }
+
+    /// Notes when the body halts and goes on; a reflex is everyday life and not noted.
+    fn note_halts(&mut self) {
+        let counts = self.shared.halt.counts();
+        let causes = self.shared.halt.decided().0.without(Causes::REFLEX);
+        // Causes that began since the last look, some of them perhaps over again.
+        for CauseCount { cause, count, began } in &counts {
+            let before = self
+                .counts
+                .iter()
+                .find(|c| c.cause == *cause)
+                .map_or(0, |c| c.count);
+            let unseen = count - before - u64::from(causes.has(*cause) && !self.causes.has(*cause));
+            if *cause == Causes::REFLEX || before == *count || before == 0 || unseen == 0 {
+                continue;
+            }
+            let at = began.since(self.began).seconds();
+            let name = cause.names().join("");
+            let text =
+                format!("the body was halted for a moment: {name} ({unseen} times, last at {at:.3} s)");
+            self.shared.events.note_causes("halt", None, &cause.names(), text);
+        }
+        self.counts = counts;
+        if causes == self.causes {
+            return;
+        }
+        let text = match causes {
+            Causes::NONE => "the body may move".to_string(),
+            some => format!("the body is halted: {}", some.names().join(", ")),
+        };
+        self.causes = causes;
+        self.shared
+            .events
+            .note_causes("halt", None, &causes.names(), text);
+    }
+
+    /// How often each cause came up, by its name; those that never did as well.
+    fn halts(&self) -> BTreeMap<&'static str, u64> {
+        let counts = self.shared.halt.counts();
+        let of = |cause| counts.iter().find(|c| c.cause == cause).map_or(0, |c| c.count);
+        Causes::named().map(|(cause, name)| (name, of(cause))).collect()
+    }
+
+    fn count(&self, counted: &CauseCount, causes: Causes) -> Value {
+        json!({
+            "cause": counted.cause.names().join(""), "count": counted.count,
+            "last_s": counted.began.since(self.began).seconds(), "stands": causes.has(counted.cause),
+            "latches": Causes::LATCHED.has(counted.cause),
+        })
+    }
+
+    fn status(&mut self, now: Time) -> Value {
+        let attached = self.shared.plugs.attached();
+        let mut wires: Vec<Value> = self
+            .wires
+            .iter()
+            .map(|w| status::wire(w, &mut self.rates, now))
+            .collect();
+        let mut taps: Vec<Value> = self.taps.iter().map(|t| status::tap(t, now)).collect();
+        let mut layers = status::layers(&self.records.lock().expect("nobody panics holding the records"));
+        for a in &attached {
+            layers.push(status::attached(a));
+            for (index, output) in a.plug.outputs.iter().enumerate() {
+                let Some(reader) = a.page.reader(index, output.kind) else {
+                    continue;
+                };
+                let watched = Watched {
+                    name: output.name.clone(),
+                    unit: output.unit.clone(),
+                    reader,
+                };
+                wires.push(status::wire(&watched, &mut self.rates, now));
+            }
+            for t in &a.taps {
+                let watched = WatchedTap {
+                    how: t.tap.how,
+                    from: t.tap.from.clone(),
+                    to: t.tap.to.clone(),
+                    time_constant: t.tap.time_constant,
+                    layer: (a.plug.layer.clone(), a.plug.level),
+                    reader: t.reader.clone(),
+                    gauge: t.gauge.clone(),
+                };
+                taps.push(status::tap(&watched, now));
+            }
+        }
+        self.rates.keep_only(&wires);
+        let (causes, since) = self.shared.halt.decided();
+        let events = self.shared.events.after(0);
+        let newest: Vec<_> = events.iter().rev().take(50).rev().collect();
+        let mut status = json!({
+            "creature": self.shared.name, "pid": std::process::id(),
+            "time_s": now.since(self.began).seconds(), "graph_version": self.shared.plugs.version(),
+            "mode": self.mode, "notes": self.notes,
+            "halt": {
+                "halted": causes != Causes::NONE, "causes": causes.names(),
+                "since_s": since.since(self.began).seconds(), "latched": causes.has(Causes::LATCHED),
+                "counts": self.shared.halt.counts().iter().map(|c| self.count(c, causes)).collect::<Vec<_>>(),
+            },
+            "halts": self.halts(),
+            "wires": wires, "taps": taps, "layers": layers, "events": newest,
+            "real_time_allocations": alloc::broken(),
+        });
+        let view = self.view.lock().expect("nobody panics holding the view").clone();
+        if let (Some(status), Value::Object(view)) = (status.as_object_mut(), view) {
+            status.extend(view);
+        }
+        status
+    }
+}
