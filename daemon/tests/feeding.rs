@@ -65,7 +65,10 @@ fn systemd_hears_ready_meals_while_all_beat_and_stopping() {
     let stopping = all.iter().position(|said| said.contains("STOPPING=1"));
     assert!(stopping.is_some() && stopping < halted, "{all:?}");
     let last = all.pop().expect("it was not silent");
-    assert!(last.contains("STOPPING=1") && last.contains("the body stands"), "{last}");
+    assert!(
+        last.contains("STOPPING=1") && last.contains("the body stands"),
+        "{last}"
+    );
 }
 
 #[test]
