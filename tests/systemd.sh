@@ -54,6 +54,13 @@ says() { local pattern=$1; shift; log "$@" | grep -q -- "$pattern"; }
 status_says() { show "$1" StatusText | grep -q -- "$2"; }
 is_new() { local pid; pid=$(show "$1" MainPID); [ "$pid" != 0 ] && [ "$pid" != "$2" ]; }
 active() { [ "$(show "$1" ActiveState)" = active ]; }
+# Signal to a unit's main process; never to 0, which would be everybody here.
+hit() {
+  local pid
+  pid=$(show "$2" MainPID)
+  [ "${pid:-0}" -gt 1 ] || fail "$2 does not run"
+  box kill "$1" "$pid"
+}
 restarted() { active "$1" && is_new "$1" "$2"; }
 attached() { ctl "$1" status | grep -q "$2 .*attached"; }
 messages() { ctl "$1" --json wires | tr '{' '\n' | sed -n 's/.*"messages":\([0-9]*\).*"wire":"body.odometry".*/\1/p'; }
@@ -103,7 +110,7 @@ active subsumed@tom || fail "the first did not outlive the start of the second"
 ctl jerry halt >/dev/null
 until_true "jerry halts" status_says subsumed@jerry 'halted: emergency'
 status_says subsumed@tom 'may move' || fail "a halt of one creature halted the other"
-until_true "the journal knows the cause" says 'the body is halted' -u subsumed@jerry SUBSUMED_KIND=halt SUBSUMED_CAUSE=emergency
+until_true "the journal knows the cause" says 'the body is halted' -u subsumed@jerry SUBSUMED_KIND=halt 'SUBSUMED_CAUSE=emergency stop'
 ctl jerry reset >/dev/null
 until_true "jerry goes on" status_says subsumed@jerry 'may move'
 ok "two at once; halt state in the status, its cause in a field of the journal"
@@ -131,7 +138,7 @@ box systemctl start subsumed-layer@tom-wander || fail "the layer does not start"
 until_true "the layer attaches" attached tom wander
 until_true "level 1 in the status" status_says subsumed@tom 'level 1 (avoid, wander)'
 layer=$(show subsumed-layer@tom-wander MainPID)
-box kill -9 "$layer"
+hit -KILL subsumed-layer@tom-wander
 until_true "the layer's death in the journal" says "layer wander (pid [0-9]*) died" -u subsumed@tom
 goes_on tom || fail "the creature must move on without the layer"
 until_true "the layer's restart" restarted subsumed-layer@tom-wander "$layer"
@@ -140,7 +147,7 @@ until_true "the layer attaches again" attached tom wander
 ok "a layer was killed and came back; the creature moved on"
 
 # SIGKILL: started again, and the layer finds it again.
-box kill -9 "$pid"
+hit -KILL subsumed@tom
 until_true "the restart after SIGKILL" restarted subsumed@tom "$pid"
 until_true "tom moves after SIGKILL" goes_on tom
 until_true "the layer finds the new daemon" attached tom wander
@@ -148,7 +155,7 @@ ok "killed, started again (NRestarts $(show subsumed@tom NRestarts)); its layer 
 
 # SIGSTOP: nobody feeds, so systemd's watchdog ends it.
 pid=$(show subsumed@tom MainPID)
-box kill -STOP "$pid"
+hit -STOP subsumed@tom
 until_true "the restart after SIGSTOP" restarted subsumed@tom "$pid"
 until_true "the watchdog in the journal" says 'Watchdog timeout' -u subsumed@tom
 until_true "tom moves after SIGSTOP" goes_on tom
@@ -159,7 +166,7 @@ box systemctl start subsumed-body@spike subsumed@spike || fail "body and daemon 
 until_true "spike may move" status_says subsumed@spike 'may move'
 until_true "the body is free" says 'body spike: free to move' -u subsumed-body@spike
 pid=$(show subsumed@spike MainPID) body=$(show subsumed-body@spike MainPID)
-box kill -STOP "$pid"
+hit -STOP subsumed@spike
 until_true "the body halts by itself" says 'body spike: halted: stale command' -u subsumed-body@spike
 until_true "spike starts again" restarted subsumed@spike "$pid"
 until_true "spike may move again" status_says subsumed@spike 'may move'
