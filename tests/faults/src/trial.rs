@@ -3,7 +3,6 @@
 //! Must never inject before the body is free: a fault that is not needed for the halt shows nothing.
 
 use ipc::clock::{self, Span, Time};
-use ipc::control::Request;
 use rustix::process::{Pid, Signal, kill_process};
 use serde_json::Value;
 
@@ -180,14 +179,6 @@ impl Trial {
             .and_then(|pid| i32::try_from(pid).ok());
         let pid = pid.and_then(Pid::from_raw).ok_or("the status names no process")?;
         kill_process(pid, signal).map_err(|e| format!("a signal: {e}"))
-    }
-
-    /// Asks the daemon for an emergency stop.
-    pub(crate) fn emergency_stop(&self) -> Result<(), String> {
-        match self.stage.ask(&Request::Halt) {
-            Some(ipc::control::Reply::Done) => Ok(()),
-            other => Err(format!("a halt was answered with {other:?}")),
-        }
     }
 }
 
