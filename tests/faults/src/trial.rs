@@ -110,13 +110,20 @@ impl Trial {
         })
     }
 
-    /// Tries a fault that must not halt the body: the daemon with its body inside goes on.
+    /// Tries a fault that must not halt the body: the daemon goes on. The body is a process of its own, whose
+    /// world turns in real time: one inside the daemon is an ordinary thread, and lost when the host is busy.
     pub(crate) fn goes_on(
         &mut self,
         fault: impl FnOnce(&mut Trial) -> Result<(), String>,
     ) -> Result<(), String> {
-        let daemon = self.daemon(&[])?;
-        self.goes_on_with(daemon, fault)
+        let mut body = self.body()?;
+        let daemon = self.daemon(&["--body", BODY])?;
+        wait_for("the body tells how it looks", || {
+            self.stage.status()["contacts"].is_object()
+        })?;
+        self.goes_on_with(daemon, fault)?;
+        leave_body(self, &mut body);
+        Ok(())
     }
 
     /// The same with a daemon that was started in another way.
