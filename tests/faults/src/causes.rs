@@ -102,9 +102,6 @@ pub(crate) static CAUSES: &[Cause] = &[
     halts("daemon-abort", "the daemon dies by SIGABRT", APART, |t| {
         lives::daemon_dies(t, Signal::ABORT)
     }),
-    halts("daemon-segv", "the daemon dies by SIGSEGV", APART, |t| {
-        lives::daemon_dies(t, Signal::SEGV)
-    }),
     halts(
         "daemon-stop",
         "the daemon freezes (SIGSTOP) and thaws",

@@ -3,6 +3,7 @@
 //! Must never take the daemon's word for a halt where the daemon is what broke: the body's own pulse says so.
 
 use ipc::clock::{self, Span, Time};
+use ipc::control::{Reply, Request};
 use rustix::process::Signal;
 
 use crate::inside::{self, Break};
@@ -186,8 +187,12 @@ pub(crate) fn ends_in_mid_step(trial: &mut Trial) -> Result<(), String> {
 pub(crate) fn emergency_stop(trial: &mut Trial) -> Result<(), String> {
     let mut body = trial.body()?;
     let mut daemon = on_trial(trial, Break::Busy)?;
+    let mut connection = trial.stage.connect().ok_or("the daemon does not answer")?;
     let (observer, fault) = at_a_free_moment(trial)?;
-    trial.emergency_stop()?;
+    let answer = connection.ask(&Request::Halt).map_err(|e| e.to_string())?;
+    trial.outcome.expect(answer == Reply::Done, || {
+        format!("a halt was answered with {answer:?}")
+    });
     halts(
         trial,
         &daemon,

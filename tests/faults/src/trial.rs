@@ -3,7 +3,6 @@
 //! Must never inject before the body is free: a fault that is not needed for the halt shows nothing.
 
 use ipc::clock::{self, Span, Time};
-use ipc::control::Request;
 use rustix::process::{Pid, Signal, kill_process};
 use serde_json::Value;
 
@@ -111,13 +110,20 @@ impl Trial {
         })
     }
 
-    /// Tries a fault that must not halt the body: the daemon with its body inside goes on.
+    /// Tries a fault that must not halt the body: the daemon goes on. The body is a process of its own, whose
+    /// world turns in real time: one inside the daemon is an ordinary thread, and lost when the host is busy.
     pub(crate) fn goes_on(
         &mut self,
         fault: impl FnOnce(&mut Trial) -> Result<(), String>,
     ) -> Result<(), String> {
-        let daemon = self.daemon(&[])?;
-        self.goes_on_with(daemon, fault)
+        let mut body = self.body()?;
+        let daemon = self.daemon(&["--body", BODY])?;
+        wait_for("the body tells how it looks", || {
+            self.stage.status()["contacts"].is_object()
+        })?;
+        self.goes_on_with(daemon, fault)?;
+        leave_body(self, &mut body);
+        Ok(())
     }
 
     /// The same with a daemon that was started in another way.
@@ -180,14 +186,6 @@ impl Trial {
             .and_then(|pid| i32::try_from(pid).ok());
         let pid = pid.and_then(Pid::from_raw).ok_or("the status names no process")?;
         kill_process(pid, signal).map_err(|e| format!("a signal: {e}"))
-    }
-
-    /// Asks the daemon for an emergency stop.
-    pub(crate) fn emergency_stop(&self) -> Result<(), String> {
-        match self.stage.ask(&Request::Halt) {
-            Some(ipc::control::Reply::Done) => Ok(()),
-            other => Err(format!("a halt was answered with {other:?}")),
-        }
     }
 }
 
