@@ -49,7 +49,13 @@ up chrt -f 10 "$bin/subsumed" --creature "$work/plain.toml"
 [ "$(thread motor | cut -d' ' -f1,2)" = "1 80" ] || fail "motor must be SCHED_FIFO 80, is $(thread motor)"
 for t in /proc/$daemon/task/*; do
   name=$(cat "$t/comm")
-  case $name in avoid|motor|watchdog) ;; *)
+  case $name in
+  avoid|motor|watchdog)
+    # Bit 14 is SIGTERM, bit 16 SIGCHLD, bit 6 SIGBUS, which a thread raises itself.
+    blocked=$((16#$(awk '/^SigBlk/{print $2}' "$t/status")))
+    [ $((blocked >> 14 & 1)) = 1 ] && [ $((blocked >> 16 & 1)) = 1 ] || fail "$name must leave signals to other threads"
+    [ $((blocked >> 6 & 1)) = 0 ] || fail "$name must not block the signals of its own faults" ;;
+  *)
     [ "$(awk '{sub(/.*\) /, ""); print $39}' "$t/stat")" = 0 ] || fail "helper thread $name inherited a real-time policy" ;;
   esac
   [ "$name" = avoid ] && [ "$(cat "/proc/$daemon/task/${t##*/}/timerslack_ns" 2>/dev/null || echo 1)" -gt 1 ] && fail "timer slack of $name is not set"

@@ -5,6 +5,7 @@
 use std::num::NonZeroU64;
 use std::time::Duration;
 
+use nix::sys::signal::{SigSet, Signal};
 use rustix::io::Errno;
 use rustix::mm::{MlockAllFlags, mlockall};
 use rustix::process::{Resource, Rlimit, getrlimit, setrlimit};
@@ -76,6 +77,7 @@ pub fn limit_runaway() {
 /// Gives the calling thread what `plan` asks for; says what was refused.
 pub fn settle(plan: &Plan) -> Vec<Refusal> {
     tighten_timers();
+    refuse_signals();
     let bound = plan.cpu.map_or(Ok(()), bind);
     let scheduled = match plan.schedule {
         Schedule::Ordinary => Ok(()),
@@ -90,6 +92,23 @@ pub fn settle(plan: &Plan) -> Vec<Refusal> {
 fn tighten_timers() {
     // Cannot fail for the calling thread; if it did, beats would be 50 µs later in best effort.
     let _ = set_current_timer_slack(NonZeroU64::new(1));
+}
+
+/// Leaves the process's signals to its other threads: a handler on a beating thread would run within a beat, and
+/// even a signal that nobody handles interrupts its sleep. Those that a thread's own faults raise stay.
+fn refuse_signals() {
+    let mut signals = SigSet::all();
+    let own = [
+        Signal::SIGBUS,
+        Signal::SIGSEGV,
+        Signal::SIGFPE,
+        Signal::SIGILL,
+        Signal::SIGTRAP,
+        Signal::SIGABRT,
+    ];
+    own.into_iter().for_each(|signal| signals.remove(signal));
+    // Fails for arguments that don't exist alone; if it did, the kernel would choose among all threads as before.
+    let _ = signals.thread_block();
 }
 
 /// Puts the calling thread under the ordinary scheduler if it is not there: whoever starts the daemon under a

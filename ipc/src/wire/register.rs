@@ -64,7 +64,8 @@ pub struct Register {
     /// Whether a message was delivered since the last gather.
     pending: bool,
     arrived: bool,
-    looked: Option<(u64, Fate)>,
+    /// What became of the existing wire's message at the last look, if there was one: number `seen`.
+    looked: Option<Fate>,
     counts: InputCounts,
     /// Where a message of the existing wire is looked at before it is let in.
     incoming: Words,
@@ -144,15 +145,10 @@ impl Register {
                 self.deliver(stamp, From::Wire);
             } else {
                 self.counts.rejected += 1;
-                self.reject_looked();
+                self.looked = Some(Fate::Rejected);
             }
         }
         sweep(&mut self.taps, now, gone);
-    }
-
-    /// A suppressor kept the existing wire's message out.
-    fn reject_looked(&mut self) {
-        self.looked = self.looked.map(|(number, _)| (number, Fate::Rejected));
     }
 
     /// Lets in the newest message of the series, in a beat in which at least one tap spoke. `original` is the
@@ -168,7 +164,7 @@ impl Register {
                 newest = Some((stamp, From::Wire));
             } else {
                 self.counts.rejected += 1;
-                self.reject_looked();
+                self.looked = Some(Fate::Rejected);
             }
         }
         for k in 0..self.taps.len() {
@@ -226,11 +222,11 @@ impl Register {
         self.seen = number;
         match plausible(stamp, now) {
             Some(stamp) if self.limits.accept(&self.incoming) => {
-                self.looked = Some((number, Fate::Delivered));
+                self.looked = Some(Fate::Delivered);
                 Some(stamp)
             }
             _ => {
-                self.looked = Some((number, Fate::Fault));
+                self.looked = Some(Fate::Fault);
                 self.counts.faults += 1;
                 None
             }
@@ -288,7 +284,7 @@ impl Register {
     /// The message of the existing wire that the last [`Register::gather`] took in, by its number, and what
     /// became of it; for those who trace.
     pub fn looked(&self) -> Option<(u64, Fate)> {
-        self.looked
+        self.looked.map(|fate| (self.seen, fate))
     }
 
     /// The messages of taps that the last [`Register::gather`] took in, for those who trace.
