@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::creature::{BODY, Creature, PortName, Reads};
 use crate::clock::Span;
+use crate::control::Plug;
 use crate::message::Kind;
 
 /// A port of the creature.
@@ -25,6 +26,9 @@ pub struct Listed {
     /// For outputs: which wire of that page.
     #[serde(default)]
     pub index: usize,
+    /// For outputs of an attached layer: the number of its coming; 0 for the daemon's own.
+    #[serde(default)]
+    pub plug: u32,
 }
 
 /// What a running creature shows.
@@ -52,7 +56,7 @@ pub struct Directory {
     /// Most messages a second of a tap; none for no limit.
     #[serde(default)]
     pub messages_max: Option<u32>,
-    /// Outputs of the creature whose wires may be read; none for all.
+    /// Outputs whose wires may be read; none for all.
     #[serde(default)]
     pub open_reads: Option<Vec<String>>,
 }
@@ -68,6 +72,7 @@ impl Directory {
             level,
             owner: String::new(),
             index: 0,
+            plug: 0,
         };
         let mut outputs: Vec<Listed> = output_ports(creature).map(listed).collect();
         for (index, output) in outputs.iter_mut().enumerate() {
@@ -90,6 +95,28 @@ impl Directory {
                 Reads::These(ports) => Some(ports.iter().map(PortName::to_string).collect()),
             },
         }
+    }
+
+    /// Adds an attached layer: it came as number `plug`.
+    pub fn join(&mut self, number: u32, plug: &Plug) {
+        self.layers.push(plug.layer.clone());
+        // Where only some wires are open, those of the newcomer have to be named as well.
+        if plug.open_reads.is_some() && self.open_reads.is_none() {
+            self.open_reads = Some(self.outputs.iter().map(|o| o.name.clone()).collect());
+        }
+        if let Some(open) = &mut self.open_reads {
+            match &plug.open_reads {
+                Some(ports) => open.extend(ports.iter().cloned()),
+                None => open.extend(plug.outputs.iter().map(|o| o.name.clone())),
+            }
+        }
+        self.open_taps.extend(plug.open_taps.iter().cloned());
+        self.inputs.extend(plug.inputs.iter().cloned());
+        let outputs = plug.outputs.iter().cloned();
+        self.outputs.extend(outputs.map(|output| Listed {
+            plug: number,
+            ..output
+        }));
     }
 
     /// Whether a module of that name is there.

@@ -60,6 +60,8 @@ pub(super) struct RawOutsiders {
     pub(super) time_constant_min: Option<Placed<Span>>,
     pub(super) time_constant_max: Option<Placed<Span>>,
     pub(super) messages_max: Option<Placed<u64>>,
+    /// The keys given that say who and how much, not what is open: a manifest has none of them.
+    pub(super) limits: Vec<(&'static str, Range<usize>)>,
 }
 
 #[derive(Default)]
@@ -170,6 +172,9 @@ fn halt(value: &Spanned<DeValue<'_>>, findings: &mut Findings) -> Option<RawHalt
 fn outsiders(value: &Spanned<DeValue<'_>>, findings: &mut Findings) -> Option<RawOutsiders> {
     let mut table = Taking::table(value, &grammar::OUTSIDERS, findings)?;
     let reads = table.raw("read").and_then(|v| reads(v, table.findings));
+    let limits = grammar::OUTSIDERS.keys.iter().map(|key| key.name);
+    let limits = limits.filter(|key| !["read", "tap"].contains(key));
+    let limits = limits.filter_map(|key| Some((key, table.keys.get(key)?.span()))).collect();
     let outsiders = RawOutsiders {
         at: value.span(),
         reads,
@@ -181,6 +186,7 @@ fn outsiders(value: &Spanned<DeValue<'_>>, findings: &mut Findings) -> Option<Ra
         time_constant_min: table.time("time_constant_min"),
         time_constant_max: table.time("time_constant_max"),
         messages_max: table.whole("messages_max"),
+        limits,
     };
     table.finish();
     Some(outsiders)
