@@ -100,23 +100,35 @@ impl Directory {
     /// Adds an attached layer: it came as number `plug`.
     pub fn join(&mut self, number: u32, plug: &Plug) {
         self.layers.push(plug.layer.clone());
-        // Where only some wires are open, those of the newcomer have to be named as well.
-        if plug.open_reads.is_some() && self.open_reads.is_none() {
+        let first = self.outputs.len();
+        self.open(&plug.outputs, &plug.inputs, &plug.open_taps, plug.open_reads.as_deref());
+        for output in &mut self.outputs[first..] {
+            output.plug = number;
+        }
+    }
+
+    /// Adds the layer of a manifest that was checked against this directory, as though it had attached.
+    pub fn join_checked(&mut self, manifest: &Creature) {
+        let name = manifest.layers.first().map_or("", |l| &l.name);
+        let more = Directory::of(manifest, &format!("{}/{name}", self.creature));
+        self.layers.extend(more.layers);
+        self.open(&more.outputs, &more.inputs, &more.open_taps, more.open_reads.as_deref());
+    }
+
+    fn open(&mut self, outputs: &[Listed], inputs: &[Listed], taps: &[String], reads: Option<&[String]>) {
+        // Where only some wires are open, those of the others have to be named as well.
+        if reads.is_some() && self.open_reads.is_none() {
             self.open_reads = Some(self.outputs.iter().map(|o| o.name.clone()).collect());
         }
         if let Some(open) = &mut self.open_reads {
-            match &plug.open_reads {
-                Some(ports) => open.extend(ports.iter().cloned()),
-                None => open.extend(plug.outputs.iter().map(|o| o.name.clone())),
+            match reads {
+                Some(ports) => open.extend_from_slice(ports),
+                None => open.extend(outputs.iter().map(|o| o.name.clone())),
             }
         }
-        self.open_taps.extend(plug.open_taps.iter().cloned());
-        self.inputs.extend(plug.inputs.iter().cloned());
-        let outputs = plug.outputs.iter().cloned();
-        self.outputs.extend(outputs.map(|output| Listed {
-            plug: number,
-            ..output
-        }));
+        self.open_taps.extend_from_slice(taps);
+        self.inputs.extend_from_slice(inputs);
+        self.outputs.extend_from_slice(outputs);
     }
 
     /// Whether a module of that name is there.
