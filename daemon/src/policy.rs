@@ -112,10 +112,18 @@ impl Policy {
             plug.modules.len() > MODULES_MAX || plug.taps.len() > PLUG_TAPS_MAX,
             "it has too many modules or taps".into(),
         );
-        let module = |l: &Listed| l.name.split_once('.').map_or("", |(module, _)| module).to_string();
+        let module = |l: &Listed| {
+            l.name
+                .split_once('.')
+                .map_or("", |(module, _)| module)
+                .to_string()
+        };
         let taken = ports().map(module).find(|module| host.has_module(module));
         let taken_name = taken.clone().unwrap_or_default();
-        against(taken.is_some(), format!("a module {taken_name:?} is there already"));
+        against(
+            taken.is_some(),
+            format!("a module {taken_name:?} is there already"),
+        );
         let own = |name: &String, of: &[Listed]| of.iter().any(|l| l.name == *name);
         let opened = plug.open_taps.iter();
         let opened = opened.filter(|name| !own(name, &plug.inputs) && !own(name, &plug.outputs));
@@ -124,7 +132,11 @@ impl Policy {
             against(true, format!("it opens {name}, which is not its own"));
         }
         for (from, _) in &plug.wires {
-            let level = host.outputs.iter().find(|o| o.name == *from).and_then(|o| o.level);
+            let level = host
+                .outputs
+                .iter()
+                .find(|o| o.name == *from)
+                .and_then(|o| o.level);
             against(
                 level.is_some_and(|level| level > plug.level),
                 format!("{from} is of a level above {}", plug.level),

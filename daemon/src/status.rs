@@ -284,10 +284,7 @@ pub struct WatchedTap {
 /// Shows a tap: whether it holds, and for how long still.
 pub fn tap(t: &WatchedTap, now: Time) -> Value {
     // What is stamped in the future is no message: see the register.
-    let reading = t
-        .reader
-        .read()
-        .filter(|r| t.joined && r.stamp <= now + AHEAD_MAX);
+    let reading = t.reader.read().filter(|r| t.joined && r.stamp <= now + AHEAD_MAX);
     let window = reading.map(|r| Window {
         stamp: r.stamp.min(now),
         time_constant: t.time_constant,

@@ -352,7 +352,10 @@ impl Recording {
         let has = |p: &Plugged| p.plug.modules.iter().any(|m| m.name == module);
         let mut plugs = self.plugs.iter().rev();
         let (_, owner) = plugs.find(|(time, p)| *time <= at && has(p))?;
-        let gone = self.unplugs.iter().any(|(time, p)| *p == owner.number && *time <= at);
+        let gone = self
+            .unplugs
+            .iter()
+            .any(|(time, p)| *p == owner.number && *time <= at);
         Some((owner, gone))
     }
 

@@ -66,7 +66,10 @@ impl State {
             for tap in other.taps.iter_mut() {
                 if tap.at.as_ref() == Some(&plug.layer) {
                     tap.joined = false;
-                    notes.push((name.clone(), format!("{} waits for layer {}", told(&name, tap), plug.layer)));
+                    notes.push((
+                        name.clone(),
+                        format!("{} waits for layer {}", told(&name, tap), plug.layer),
+                    ));
                 }
             }
             if reads(&other.plug, plug).next().is_some() {
@@ -148,15 +151,24 @@ impl Plugs {
                 };
                 tap.joined = refused.is_none();
                 let outcome = outcome("joined", "refused");
-                (name.clone(), format!("{} {outcome} at layer {layer}", told(&name, tap)))
+                (
+                    name.clone(),
+                    format!("{} {outcome} at layer {layer}", told(&name, tap)),
+                )
             }
             Order::Release { .. } => {
                 let outcome = outcome("released", "did not release");
-                (layer.clone(), format!("layer {layer} {outcome} the taps of a layer that has gone"))
+                (
+                    layer.clone(),
+                    format!("layer {layer} {outcome} the taps of a layer that has gone"),
+                )
             }
             Order::Connect { owner, .. } => {
                 let outcome = outcome("reads", "does not read");
-                (layer.clone(), format!("layer {layer} {outcome} the wires of {owner} again"))
+                (
+                    layer.clone(),
+                    format!("layer {layer} {outcome} the wires of {owner} again"),
+                )
             }
             Order::Lost { .. } => return,
         };
@@ -172,7 +184,10 @@ impl Plugs {
         };
         let here = |t: &&AttachedTap| t.joined && t.at.as_ref() == Some(&owner.plug.layer);
         for tap in state.attached.iter().flat_map(|a| &a.taps).filter(here) {
-            if let Some((_, counts)) = counts.iter().find(|(tap_number, _)| *tap_number == tap.gauge.number()) {
+            if let Some((_, counts)) = counts
+                .iter()
+                .find(|(tap_number, _)| *tap_number == tap.gauge.number())
+            {
                 tap.gauge.take_over(tap.before + *counts);
             }
         }
@@ -195,7 +210,12 @@ fn connect(writer: &Attached, reader: &Attached, now: Time) {
 
 /// The wires of `writer` that `reader` reads and may read.
 fn reads<'p>(reader: &'p Plug, writer: &'p Plug) -> impl Iterator<Item = &'p Listed> {
-    let open = |l: &&Listed| writer.open_reads.as_ref().is_none_or(|open| open.contains(&l.name));
+    let open = |l: &&Listed| {
+        writer
+            .open_reads
+            .as_ref()
+            .is_none_or(|open| open.contains(&l.name))
+    };
     let reads = |l: &&Listed| reader.wires.iter().any(|(from, _)| *from == l.name);
     writer.outputs.iter().filter(open).filter(reads)
 }

@@ -211,14 +211,24 @@ impl Guests {
     /// to them.
     fn welcome(&mut self, newcomer: Guest, hands: &mut [Hand]) {
         for (tap, gauge) in newcomer.plug.taps.iter().zip(&newcomer.gauges) {
-            let end = tap_end(newcomer.number, &newcomer.plug, tap, &newcomer.page, gauge.clone());
+            let end = tap_end(
+                newcomer.number,
+                &newcomer.plug,
+                tap,
+                &newcomer.page,
+                gauge.clone(),
+            );
             let place = match self.policy.place(tap.how, &tap.to) {
                 Some((station, port)) => {
                     give(&mut hands[station], Command::join(tap.how, port, end));
                     Spot::Own((station, port))
                 }
                 None => {
-                    let owner = self.here.iter_mut().find(|g| has_port(&g.plug, tap)).expect("checked");
+                    let owner = self
+                        .here
+                        .iter_mut()
+                        .find(|g| has_port(&g.plug, tap))
+                        .expect("checked");
                     let port = owner.places.tapped(tap.how, &tap.to).expect("checked");
                     give(&mut owner.hand, Command::join(tap.how, port, end));
                     Spot::Guest(owner.plug.layer.clone(), port)
@@ -240,7 +250,10 @@ impl Guests {
             let present = (newcomer.number, &newcomer.plug);
             let waiting = |tap: &PlugTap| {
                 has_port(&newcomer.plug, tap)
-                    && self.policy.reasons_against_rejoining(&other.plug, tap, present).is_empty()
+                    && self
+                        .policy
+                        .reasons_against_rejoining(&other.plug, tap, present)
+                        .is_empty()
             };
             for (tap, gauge) in other.plug.taps.iter().zip(&other.gauges) {
                 if waiting(tap) {
@@ -273,7 +286,10 @@ impl Guests {
 }
 
 fn give(hand: &mut Hand, command: Command) {
-    assert!(hand.commands.push(command).is_ok(), "every command is taken up at once");
+    assert!(
+        hand.commands.push(command).is_ok(),
+        "every command is taken up at once"
+    );
 }
 
 /// The first beat of the grid through `first` that is not before `now`.

@@ -23,9 +23,7 @@ mod document;
 mod peer;
 mod place;
 
-pub use document::{
-    Event, JoinTap, Order, Plug, PlugModule, PlugTap, REFUSAL_MAX, Reply, Request, Versions,
-};
+pub use document::{Event, JoinTap, Order, Plug, PlugModule, PlugTap, REFUSAL_MAX, Reply, Request, Versions};
 pub use peer::Peer;
 use place::domain_prefix;
 pub(crate) use place::socket_in_run_dir;

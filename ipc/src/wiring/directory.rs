@@ -101,7 +101,12 @@ impl Directory {
     pub fn join(&mut self, number: u32, plug: &Plug) {
         self.layers.push(plug.layer.clone());
         let first = self.outputs.len();
-        self.open(&plug.outputs, &plug.inputs, &plug.open_taps, plug.open_reads.as_deref());
+        self.open(
+            &plug.outputs,
+            &plug.inputs,
+            &plug.open_taps,
+            plug.open_reads.as_deref(),
+        );
         for output in &mut self.outputs[first..] {
             output.plug = number;
         }
@@ -112,7 +117,12 @@ impl Directory {
         let name = manifest.layers.first().map_or("", |l| &l.name);
         let more = Directory::of(manifest, &format!("{}/{name}", self.creature));
         self.layers.extend(more.layers);
-        self.open(&more.outputs, &more.inputs, &more.open_taps, more.open_reads.as_deref());
+        self.open(
+            &more.outputs,
+            &more.inputs,
+            &more.open_taps,
+            more.open_reads.as_deref(),
+        );
     }
 
     fn open(&mut self, outputs: &[Listed], inputs: &[Listed], taps: &[String], reads: Option<&[String]>) {

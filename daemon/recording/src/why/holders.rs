@@ -62,7 +62,12 @@ pub fn holders(recording: &Recording, at: Time) -> Vec<Holder> {
         // In series: by level, and within one by the order in which they were declared.
         taps.sort_by_key(|(_, t)| t.level);
         let seen = |(plug, tap): &(u32, Tap)| tap_seen(tap, tap_newest(recording, *plug, tap, at), at);
-        hold(recording, (port, taps[0].1.how), taps.iter().map(seen).collect(), at)
+        hold(
+            recording,
+            (port, taps[0].1.how),
+            taps.iter().map(seen).collect(),
+            at,
+        )
     };
     ports.into_iter().map(holder).collect()
 }
@@ -79,7 +84,11 @@ fn hold(recording: &Recording, (port, kind): (String, How), taps: Vec<TapSeen>, 
         Some(from.clone())
     };
     let own = match kind {
-        How::Suppress => recording.manifest.wire_into(&port).map(str::to_string).or_else(attached),
+        How::Suppress => recording
+            .manifest
+            .wire_into(&port)
+            .map(str::to_string)
+            .or_else(attached),
         How::Inhibit => Some(port.clone()),
     };
     // The last in the series that holds rejects what all before it bring.

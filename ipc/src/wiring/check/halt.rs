@@ -64,14 +64,15 @@ impl Checker<'_> {
             self.opens_its_own(&raw.taps);
             self.opens_its_own(raw.reads.as_deref().unwrap_or_default());
         }
-        let own = |c: &Self, name: &Placed<PortName>| c.host.is_none() || c.modules.contains_key(&name.value.module);
-        for name in raw.taps.iter().filter(|name| own(self, name)) {
-            self.open_tap(name, reflexes);
+        for name in &raw.taps {
+            if self.opens(name) {
+                self.open_tap(name, reflexes);
+            }
         }
         if let Some(reads) = &raw.reads {
             self.each_once("port", reads);
             for name in reads {
-                if own(self, name) {
+                if self.opens(name) {
                     let _ = self.port(name, true);
                 }
             }

@@ -27,7 +27,8 @@ impl Checker<'_> {
         }
         for (key, at) in parts.outsiders.iter().flat_map(|o| &o.limits) {
             let message = format!("the [outsiders] of a manifest have no {key:?}");
-            let help = "whom it lets in and how much is for the creature's own file: expected \"read\" and \"tap\"";
+            let help =
+                "whom it lets in and how much is for the creature's own file: expected \"read\" and \"tap\"";
             self.findings
                 .refuse(Rule::NotInManifest, at.clone(), message, help);
         }
@@ -47,10 +48,15 @@ impl Checker<'_> {
         }
     }
 
+    /// Whether it is for this file to open a port: a manifest opens those of its own modules.
+    pub(super) fn opens(&self, name: &Placed<PortName>) -> bool {
+        self.host.is_none() || self.modules.contains_key(&name.value.module)
+    }
+
     /// A layer opens its own ports to others, and nobody else's.
     pub(super) fn opens_its_own(&mut self, opened: &[Placed<PortName>]) {
         for name in opened {
-            if self.modules.contains_key(&name.value.module) {
+            if self.opens(name) {
                 continue;
             }
             let message = format!("{} is not a port of this layer", name.value);

@@ -49,7 +49,6 @@ pub(super) struct RawHalt {
 
 #[derive(Default)]
 pub(super) struct RawOutsiders {
-    pub(super) at: Range<usize>,
     /// `None` for all.
     pub(super) reads: Option<Vec<Placed<PortName>>>,
     pub(super) taps: Vec<Placed<PortName>>,
@@ -174,9 +173,10 @@ fn outsiders(value: &Spanned<DeValue<'_>>, findings: &mut Findings) -> Option<Ra
     let reads = table.raw("read").and_then(|v| reads(v, table.findings));
     let limits = grammar::OUTSIDERS.keys.iter().map(|key| key.name);
     let limits = limits.filter(|key| !["read", "tap"].contains(key));
-    let limits = limits.filter_map(|key| Some((key, table.keys.get(key)?.span()))).collect();
+    let limits = limits
+        .filter_map(|key| Some((key, table.keys.get(key)?.span())))
+        .collect();
     let outsiders = RawOutsiders {
-        at: value.span(),
         reads,
         taps: table.ports("tap"),
         users: accounts(table.raw("users"), "user", table.findings),

@@ -188,7 +188,10 @@ impl Attendant {
             .map(|w| w.to.to_string())
             .collect();
         for to in inputs {
-            let place = self.places.input(&to).filter(|_| self.takes(&to) == Some(wire.kind));
+            let place = self
+                .places
+                .input(&to)
+                .filter(|_| self.takes(&to) == Some(wire.kind));
             let reader = page.reader(wire.index, wire.kind);
             let (Some(place), Some(reader)) = (place, reader) else {
                 return Err(format!("{} no longer carries what {to} takes", wire.name));
