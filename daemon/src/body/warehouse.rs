@@ -8,7 +8,7 @@
 use ::warehouse::{ROBOT_RADIUS_M, Warehouse};
 use ipc::clock::{Span, Time};
 use ipc::message::{Kind, Map, Payload, Pose};
-use ipc::wiring::{Declaration, Parameter, Port, Setting, Takes};
+use ipc::wiring::{Declaration, Parameter, Port, Setting};
 use serde_json::{Value, json};
 
 use super::{BodyKind, Place, World, WorldEnd};
@@ -51,34 +51,19 @@ static DECLARATION: Declaration = Declaration {
         Port::new("odometry", Kind::Pose, "where the wheels think they are"),
     ],
     parameters: &[
-        number("people", 6.0, 20.0, "people who walk about the aisles"),
-        number(
+        Parameter::number("people", 6.0, "people who walk about the aisles")
+            .between(0.0, 20.0)
+            .unit("1"),
+        Parameter::number(
             "number",
             1.0,
-            1e15,
             "the seed of the floor and of all that happens on it",
-        ),
-        Parameter {
-            name: "empty",
-            takes: Takes::Bit { default: Some(false) },
-            unit: "",
-            about: "one empty hall of 8 m by 6 m instead",
-        },
+        )
+        .between(0.0, 1e15)
+        .unit("1"),
+        Parameter::bit("empty", false, "one empty hall of 8 m by 6 m instead"),
     ],
 };
-
-const fn number(name: &'static str, default: f64, high: f64, about: &'static str) -> Parameter {
-    Parameter {
-        name,
-        takes: Takes::Number {
-            low: 0.0,
-            high,
-            default: Some(default),
-        },
-        unit: "1",
-        about,
-    }
-}
 
 /// The robot's body and the warehouse around it.
 pub struct WarehouseWorld {
