@@ -6,25 +6,17 @@ use ipc::clock::Span;
 use ipc::message::Kind;
 use ipc::wiring::{Declaration, Parameter, Port, Takes};
 
+use crate::body::rover;
+
 pub(super) static DECLARATION: Declaration = Declaration {
     name: "office",
     about: "Allen's body, a round robot with twelve sonars and a range camera, in a simulated office with people",
     diagram: "ping -> sonar; turn, forward -> motion -> compass, odometry; every picture: fan",
-    inputs: &[
-        Port::new("ping", Kind::Pulse, "fires the ring of sonars"),
-        Port::new("turn", Kind::Number, "turning rate")
-            .unit("rad/s")
-            .between(-10.0, 10.0),
-        Port::new("forward", Kind::Number, "forward speed")
-            .unit("m/s")
-            .between(-2.0, 2.0),
-    ],
+    inputs: rover::COMMANDS,
     outputs: &[
-        Port::new("sonar", Kind::Map, "what the ring heard, straight ahead first")
-            .unit("m")
-            .between(0.0, 100.0),
-        Port::new("compass", Kind::Number, "which way the robot faces").unit("rad"),
-        Port::new("odometry", Kind::Pose, "where the wheels think they are"),
+        rover::SENSES[0],
+        rover::SENSES[1],
+        rover::SENSES[2],
         Port::new(
             "fan",
             Kind::Map,
