@@ -4,15 +4,18 @@
 mod stage;
 mod tower;
 
+use std::io::Read;
 use std::sync::Arc;
 
 use ipc::clock::Time;
+use ipc::control::{Reply, Request};
 use ipc::message::Kind;
 use ipc::wire::iceoryx::Domain;
 use ipc::wire::{Page, Reader};
+use recording::{Recording, why};
 use rustix::process::Signal;
 use stage::{Stage, wait_for};
-use tower::{MIDDLE, TAU, TOP, TOWER, attached, daemon, lonely_top, messages, on_stage, says, tap};
+use tower::{MIDDLE, TAU, TOP, TOWER, attached, daemon, greeted, lonely_top, messages, on_stage, says, tap};
 
 /// Ends of the wires of an attached layer, mapped like anybody's.
 fn readers<const N: usize>(layer: &str, indices: [usize; N]) -> (Arc<Page>, [Reader; N]) {
@@ -155,6 +158,62 @@ fn hushed(stage: &Stage) {
         wait_for("level 2 goes on", || messages(stage, "hush.out") > hush + 5);
         messages(stage, "beacon.out") == before
     });
+}
+
+/// What the daemon remembers of the last minute, as `subsumectl` asks for it.
+fn past(stage: &Stage) -> Recording {
+    let mut connection = greeted(stage);
+    let request = Request::Record {
+        past: true,
+        seconds: Some(0.0),
+        ring: None,
+    };
+    let answer = connection.ask(&request).expect("the daemon answers");
+    assert!(matches!(answer, Reply::Recording), "{answer:?}");
+    let mut bytes = Vec::new();
+    connection.rest().read_to_end(&mut bytes).expect("a recording");
+    recording::reader::parse(&bytes).expect("a sound one")
+}
+
+#[test]
+fn who_holds_a_port_of_a_plugged_layer_and_why_can_be_asked() {
+    let stage = Stage::new("asked");
+    // Without a flight recorder nothing but the newest of everything is remembered.
+    let mut daemon = tower::daemon_with(&stage, &["--flight-recorder", "off"]);
+    let mut middle = attached(&stage, "middle", MIDDLE);
+    let _top = attached(&stage, "top", TOP);
+    wait_for("level 2 is heard", || says(&stage, "ground.out") == 3.0);
+    let holder = |port: &str| {
+        let recording = past(&stage);
+        let at = recording.beats.iter().flatten().map(|b| Time(b.commit_ns)).max();
+        let holders = why::holders(&recording, at.expect("there are beats"));
+        holders.into_iter().find(|h| h.port == port)
+    };
+    wait_for("level 2 holds level 1", || {
+        let relay = holder("relay.in").expect("it is tapped");
+        relay.layer.as_deref() == Some("top") && relay.next.as_deref() == Some("mid.out")
+    });
+    wait_for("and hushes it", || {
+        let beacon = holder("beacon.out").expect("it is tapped");
+        beacon.holder.as_deref() == Some("hush.out")
+    });
+    wait_for("level 1 holds level 0", || {
+        holder("ground.in").expect("it is tapped").layer.as_deref() == Some("middle")
+    });
+    wait_for("the chain leads through both processes", || {
+        let recording = past(&stage);
+        let at = recording.beats.iter().flatten().map(|b| Time(b.commit_ns)).max();
+        let link = why::why(&recording, "ground.out", at.expect("there are beats")).expect("it speaks");
+        let chain = serde_json::to_string(&link).expect("a chain is JSON");
+        ["relay.out", "relay.in", "high.out"]
+            .iter()
+            .all(|name| chain.contains(&format!("\"{name}\"")))
+    });
+    middle.kill();
+    wait_for("its ports are nobody's", || {
+        holder("relay.in").is_none() && holder("beacon.out").is_none()
+    });
+    assert!(daemon.leave().success());
 }
 
 #[test]

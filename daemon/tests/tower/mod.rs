@@ -93,9 +93,17 @@ pub(crate) fn on_stage(test: &str, short: &str) -> Option<Stage> {
 }
 
 pub(crate) fn daemon(stage: &Stage) -> Player {
+    daemon_with(stage, &[])
+}
+
+/// The same, told more.
+pub(crate) fn daemon_with(stage: &Stage, arguments: &[&str]) -> Player {
     let file = stage.run.join("tower.toml");
     std::fs::write(&file, GROUND).expect("the stage takes files");
-    stage.daemon(TOWER, &["--creature", &file.display().to_string()])
+    let file = file.display().to_string();
+    let mut all = vec!["--creature", &file];
+    all.extend(arguments);
+    stage.daemon(TOWER, &all)
 }
 
 /// A layer process of this manifest.
