@@ -177,13 +177,15 @@ box systemctl stop subsumed-body@spike
 ok "a body process halts by itself and outlives its daemon"
 
 # Stop: the body is halted before the process ends; the layer goes with its daemon.
+invocation=$(show subsumed@tom InvocationID)
 box systemctl stop subsumed@tom
 [ "$(show subsumed@tom Result)" = success ] || fail "a stop must end with success, not $(show subsumed@tom Result)"
 until_true "the layer stops with its daemon" sh -c "! SDBOX=$SDBOX tests/sdbox run systemctl -q is-active subsumed-layer@tom-wander"
-box journalctl --sync
-halted=$(log -u subsumed@tom -n 20 | grep -n 'the body is halted: .*shutdown' | tail -1 | cut -d: -f1)
-stopped=$(log -u subsumed@tom -n 20 | grep -n -E '^Stopped|Deactivated successfully' | head -1 | cut -d: -f1)
-[ -n "$halted" ] && [ -n "$stopped" ] && [ "$halted" -lt "$stopped" ] || fail "the body must be halted before the daemon leaves"
+# Both speak to the journal through one socket, so their order there is the order in which it happened.
+line_of() { log "_SYSTEMD_INVOCATION_ID=$invocation" + "INVOCATION_ID=$invocation" | grep -n "$1" | tail -1 | cut -d: -f1; }
+until_true "the end in the journal" says 'Deactivated successfully' "INVOCATION_ID=$invocation"
+halted=$(line_of 'the body is halted: .*shutdown') ended=$(line_of 'Deactivated successfully')
+[ -n "$halted" ] && [ "$halted" -lt "$ended" ] || fail "the body must be halted before the daemon leaves"
 ok "stopped: body halted first, its layer gone with it"
 
 # Bad input: said with its place, and not tried again and again.
