@@ -78,20 +78,25 @@ box systemctl daemon-reload
 units="subsumed@tom.service subsumed-body@tom.service subsumed-layer@tom-wander.service"
 said=$(box systemd-analyze verify $units 2>&1 >/dev/null) || true
 [ -z "$said" ] || fail "systemd-analyze verify: $said"
+exposures=""
 for unit in subsumed@:10 subsumed-layer@:10 subsumed-body@:11; do
   box systemd-analyze security --offline=true --threshold="${unit#*:}" "/usr/lib/systemd/system/${unit%:*}.service" >"$stage/security" \
     || fail "exposure: $(grep Overall "$stage/security")"
+  exposures+=" ${unit%:*} $(grep -o '[0-9.]* [A-Z]*' <<<"$(grep Overall "$stage/security")" | grep -m1 -o '^[0-9.]*')"
 done
 if box sh -c 'udevadm verify --help' >/dev/null 2>&1; then
   box udevadm verify /usr/lib/udev/rules.d/60-subsumed-serial.rules >/dev/null || fail "the udev rule is not sound"
 else
   echo "  skipped: the udev rule (this systemd has no \`udevadm verify\`)"
 fi
-ok "verified; exposure of daemon and layer at most 1.0, of the body 1.1"
+ok "verified; exposure at most 1.0, of the body 1.1:$exposures"
 
 # Start: `systemctl start` returns when it is ready, and not before.
 box systemctl start subsumed@tom || fail "subsumed@tom does not start"
 active subsumed@tom || fail "not active after its start"
+status_says subsumed@tom '^level 0 (avoid); ' || fail "ready without a status"
+beats=$(ctl tom --json status | grep -o '"beats":[0-9]*' | head -1 | cut -d: -f2)
+[ "${beats:-0}" -gt 0 ] || fail "ready before the first beat"
 until_true "the status of tom" status_says subsumed@tom 'level 0 (avoid); may move'
 if chrt -f 1 true 2>/dev/null; then
   status_says subsumed@tom 'real time' || fail "real time was refused: $(log -u subsumed@tom)"
@@ -101,6 +106,11 @@ else
 fi
 [ "$(box stat -c %U "/proc/$(show subsumed@tom MainPID)")" = subsumed ] || fail "it does not run as its user"
 until_true "tom moves" goes_on tom
+# A login session finds it without being told where, and is told why it may not.
+box env XDG_RUNTIME_DIR=/run/user/0 subsumectl --creature tom status >/dev/null || fail "root must find the host's daemon"
+said=$(box setpriv --reuid=60001 --regid=60001 --clear-groups env XDG_RUNTIME_DIR=/run/user/60001 subsumectl --creature tom status 2>&1) \
+  && fail "another user must not ask for the status"
+grep -q 'not open to this user' <<<"$said" || fail "another user must hear why: $said"
 ok "started, ready, with its status: $(show subsumed@tom StatusText)"
 
 # Two at once, on wires and sockets of their own.
@@ -113,6 +123,7 @@ status_says subsumed@tom 'may move' || fail "a halt of one creature halted the o
 until_true "the journal knows the cause" says 'the body is halted' -u subsumed@jerry SUBSUMED_KIND=halt 'SUBSUMED_CAUSE=emergency stop'
 ctl jerry reset >/dev/null
 until_true "jerry goes on" status_says subsumed@jerry 'may move'
+until_true "the flight recorder's file" box sh -c 'ls /var/lib/subsumed/jerry-*-emergency-stop.mcap'
 ok "two at once; halt state in the status, its cause in a field of the journal"
 
 # Reload: nothing changes while it runs, and the journal says so.
@@ -144,7 +155,11 @@ goes_on tom || fail "the creature must move on without the layer"
 until_true "the layer's restart" restarted subsumed-layer@tom-wander "$layer"
 until_true "the layer attaches again" attached tom wander
 [ "$(show subsumed@tom MainPID)" = "$pid" ] || fail "the death of a layer must not touch the daemon"
-ok "a layer was killed and came back; the creature moved on"
+entry=$(box journalctl -q --no-pager -o json SUBSUMED_CREATURE=tom SUBSUMED_LAYER=wander SUBSUMED_WIRE=turn.heading | tail -1)
+for field in '"SUBSUMED_KIND":"layer"' '"SUBSUMED_TIME":"' '"_SYSTEMD_UNIT":"subsumed@tom.service"' '"PRIORITY":"6"'; do
+  grep -qF -- "$field" <<<"$entry" || fail "the journal must have $field about the layer: $entry"
+done
+ok "a layer was killed and came back; the creature moved on; layer and wire are fields of the journal"
 
 # SIGKILL: started again, and the layer finds it again.
 hit -KILL subsumed@tom
@@ -196,18 +211,26 @@ ok "a broken file: its errors in the journal, no restarts"
 
 # Real time refused: explained, and the creature runs in best effort.
 refuse() {
+  local option=$1 found=$2
   box mkdir -p /run/systemd/system/subsumed@jerry.service.d
-  printf '[Service]\n%s\n' "$1" | box sh -c 'cat >/run/systemd/system/subsumed@jerry.service.d/refuse.conf'
+  printf '[Service]\n%s\n' "$option" | box sh -c 'cat >/run/systemd/system/subsumed@jerry.service.d/refuse.conf'
   box systemctl daemon-reload
-  box systemctl restart subsumed@jerry || fail "with $1 it must start in best effort"
-  status_says subsumed@jerry 'best effort' || fail "with $1 its status must say best effort"
-  local words; for words in 'sched_setscheduler(SCHED_FIFO' CAP_SYS_NICE RT_GROUP_SCHED RestrictRealtime= 'user namespaces'; do
-    says "$words" -u subsumed@jerry "_PID=$(show subsumed@jerry MainPID)" || fail "with $1 the journal must name $words"
+  box systemctl restart subsumed@jerry || fail "with $option it must start in best effort"
+  status_says subsumed@jerry 'best effort' || fail "with $option its status must say best effort"
+  local words; for words in 'sched_setscheduler(SCHED_FIFO' CAP_SYS_NICE RT_GROUP_SCHED RestrictRealtime= 'user namespaces' "found here: $found"; do
+    says "$words" -u subsumed@jerry "_PID=$(show subsumed@jerry MainPID)" || fail "with $option the journal must name $words"
   done
 }
-refuse PrivateUsers=yes
-refuse RestrictRealtime=yes
-ok "refused real time is explained"
+refuse PrivateUsers=yes 'a user namespace'
+refuse RestrictRealtime=yes 'a system call filter'
+ok "real time refused by PrivateUsers= and RestrictRealtime=: explained in the journal"
+# Last, because it takes real time away from everything in the slice, as on a real host.
+if box sh -c 'cat /sys/fs/cgroup/cpu*/cpu.rt_runtime_us' >/dev/null 2>&1; then
+  refuse CPUWeight=50 'the cpu control group /system.slice'
+  ok "real time refused by RT_GROUP_SCHED: explained in the journal"
+else
+  echo "  skipped: RT_GROUP_SCHED (this kernel has none, or no cpu control group of the old layout)"
+fi
 
 box systemctl stop subsumed@jerry
 until_true "no socket is left" box sh -c '! ls /run/subsumed/*.sock /run/subsumed/*.body'
