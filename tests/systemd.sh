@@ -84,10 +84,14 @@ for unit in subsumed@:10 subsumed-layer@:10 subsumed-body@:11; do
     || fail "exposure: $(grep Overall "$stage/security")"
   exposures+=" ${unit%:*} $(grep -o '[0-9.]* [A-Z]*' <<<"$(grep Overall "$stage/security")" | grep -m1 -o '^[0-9.]*')"
 done
-if box sh -c 'udevadm verify --help' >/dev/null 2>&1; then
-  box udevadm verify /usr/lib/udev/rules.d/60-subsumed-serial.rules >/dev/null || fail "the udev rule is not sound"
+# A trial run over any device reads every rule and complains of what it does not understand.
+device=$(box sh -c 'ls -d /sys/class/tty/* 2>/dev/null | head -1')
+if command -v udevadm >/dev/null && [ -n "$device" ]; then
+  box udevadm test --action=add "$device" >"$stage/udev" 2>&1 || true
+  grep -q 'DEVPATH=' "$stage/udev" || fail "udevadm does not read rules: $(tail -3 "$stage/udev")"
+  grep '^/usr/lib/udev/rules.d/60-subsumed' "$stage/udev" && fail "the udev rule is not sound"
 else
-  echo "  skipped: the udev rule (this systemd has no \`udevadm verify\`)"
+  echo "  skipped: the udev rule (no udevadm, or no device to try it on)"
 fi
 ok "verified; exposure at most 1.0, of the body 1.1:$exposures"
 
