@@ -90,7 +90,7 @@ box cp /usr/share/subsumed/creatures/allen.toml /etc/subsumed/tom.toml
 box systemctl enable -q --now subsumed@tom || fail "subsumed@tom does not start"
 box ln -s /usr/bin/allen-wander /etc/subsumed/layers/tom-wander
 box mkdir /etc/systemd/system/subsumed-layer@tom-wander.service.d
-sed -n '/^```ini$/,/^```$/p' deploy/README.md | grep -v '^```' \
+awk '/^```ini$/ {on = ++count == 1; next} /^```$/ {on = 0} on' deploy/README.md \
   | box sh -c 'cat >/etc/systemd/system/subsumed-layer@tom-wander.service.d/creature.conf'
 box systemctl daemon-reload
 box systemctl -q add-wants subsumed@tom subsumed-layer@tom-wander

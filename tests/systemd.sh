@@ -32,7 +32,9 @@ echo 'OPTIONS=--body spike' >"$files/etc/subsumed/spike.env"
 printf 'creature = "x"\n[[layer]]\nname = \n' >"$files/etc/subsumed/bad.toml"
 ln -s /usr/bin/allen-wander "$files/etc/subsumed/layers/tom-wander"
 mkdir -p "$files/etc/systemd/system/subsumed-layer@tom-wander.service.d"
-sed -n '/^```ini$/,/^```$/p' deploy/README.md | grep -v '^```' >"$files/etc/systemd/system/subsumed-layer@tom-wander.service.d/creature.conf"
+# The n-th drop-in of the manual.
+drop_in() { awk -v n="$1" '/^```ini$/ {on = ++count == n; next} /^```$/ {on = 0} on' deploy/README.md; }
+drop_in 1 >"$files/etc/systemd/system/subsumed-layer@tom-wander.service.d/creature.conf"
 # Outside of the overlay a mkdtemp folder is for its owner alone.
 chmod -R u=rwX,go=rX "$files"
 
@@ -212,6 +214,23 @@ box systemctl start subsumed@bad 2>/dev/null && fail "a broken creature file mus
 [ "$(show subsumed@bad ExecMainStatus)" = 2 ] && [ "$(show subsumed@bad NRestarts)" = 0 ] || fail "bad input must end with status 2, once"
 until_true "the errors of a broken file" says 'bad.toml:3:' -u subsumed@bad
 ok "a broken file: its errors in the journal, no restarts"
+
+# The page and its hole in the wall, as the manual says.
+if command -v curl >/dev/null; then
+  may_look() { box curl -fsS --max-time 5 http://127.0.0.1:4686/api/state; }
+  may_look >/dev/null 2>&1 && fail "the page must be off"
+  echo 'PAGE=--page-port 4686' | box sh -c 'cat >/etc/subsumed/jerry.env'
+  box systemctl restart subsumed@jerry || fail "jerry does not start with a page"
+  may_look >/dev/null 2>&1 && fail "without its drop-in the page must not be reached"
+  box mkdir -p /etc/systemd/system/subsumed@jerry.service.d
+  drop_in 2 | box sh -c 'cat >/etc/systemd/system/subsumed@jerry.service.d/page.conf'
+  box systemctl daemon-reload
+  box systemctl restart subsumed@jerry || fail "jerry does not start with its drop-in for the page"
+  may_look | grep -q '"jerry"' || fail "with its drop-in the page must be reached"
+  ok "the page is off, and on where the manual says how; exposure then $(box systemd-analyze security subsumed@jerry | grep -o '[0-9.]* OK\|[0-9.]* MEDIUM\|[0-9.]* SAFE' | tail -1)"
+else
+  echo "  skipped: the page (no curl)"
+fi
 
 # Real time refused: explained, and the creature runs in best effort.
 refuse() {
