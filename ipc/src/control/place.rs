@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 const SYSTEM: &str = "/run/subsumed";
 
 /// The directory of control sockets: `SUBSUMED_RUN`, else `$XDG_RUNTIME_DIR/subsumed`, else
-/// `/run/subsumed` if there is one, else one of the user's own below `/tmp`.
+/// `/run/subsumed` if this user may write there, else one of the user's own below `/tmp`.
 pub fn run_dir() -> PathBuf {
     if let Some(dir) = std::env::var_os("SUBSUMED_RUN") {
         return dir.into();
@@ -16,9 +16,8 @@ pub fn run_dir() -> PathBuf {
     if let Some(dir) = std::env::var_os("XDG_RUNTIME_DIR") {
         return PathBuf::from(dir).join("subsumed");
     }
-    let system = PathBuf::from(SYSTEM);
-    if system.is_dir() {
-        return system;
+    if rustix::fs::access(SYSTEM, rustix::fs::Access::WRITE_OK).is_ok() {
+        return SYSTEM.into();
     }
     PathBuf::from(format!("/tmp/subsumed-{}", rustix::process::getuid().as_raw()))
 }
