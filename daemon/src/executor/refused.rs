@@ -72,7 +72,7 @@ impl Standing {
             .cgroup
             .lines()
             .filter_map(|line| line.split_once(':')?.1.split_once(':'));
-        let mut cpu = groups.filter(|(controllers, _)| controllers.split(',').any(|c| c == "cpu"));
+        let cpu = groups.filter(|(controllers, _)| controllers.split(',').any(|c| c == "cpu"));
         cpu.map(|(_, path)| path).find(|path| *path != "/")
     }
 }
