@@ -34,12 +34,17 @@ ctl() { box subsumectl --creature tom "$@"; }
 attached() { ctl status | grep -q "wander .*attached"; }
 messages() { ctl --json wires | tr '{' '\n' | sed -n 's/.*"messages":\([0-9]*\).*"wire":"body.odometry".*/\1/p'; }
 goes_on() { local before; before=$(messages); sleep 0.3; [ "$(messages)" -gt "$before" ]; }
-# Every file of the host that is no log, cache, or dpkg's own book; and who has an account.
+# What differs from the host, but for logs, caches and dpkg's own book; what lies in memory; and who has an account.
 files() {
-  box find / -xdev \( -path /proc -o -path /sys -o -path /dev -o -path /tmp -o -path /run -o -path /var/log -o -path /var/cache \
-    -o -path /var/lib/dpkg -o -path /var/lib/systemd -o -path /var/tmp -o -name '*-' \) -prune -o -print | sort
-  box sh -c 'cat /etc/passwd /etc/group'
-  box sh -c 'ls /run /dev/shm'
+  (
+    cd "$SDBOX/upper"
+    find . \( -path ./var/log -o -path ./var/cache -o -path ./var/lib/dpkg -o -path ./var/lib/systemd -o -path ./var/tmp \
+      -o -path './etc/*-' -o -path './etc/.pwd.lock' \) -prune -o -print | sort | while read -r file; do
+      if [ -d "$file" ]; then [ -d "/$file" ] || echo "$file/"
+      elif [ ! -f "$file" ] || ! cmp -s "$file" "/$file"; then echo "$file"; fi
+    done
+  )
+  box sh -c 'ls /run /dev/shm; getent passwd; getent group'
 }
 
 CARGO_TARGET_DIR=$(dirname "$bin") NO_BUILD=1 deploy/package "$stage" >"$stage/package.log" 2>&1 || { cat "$stage/package.log"; fail "it does not build"; }
@@ -94,7 +99,7 @@ box mkdir /etc/systemd/system/subsumed-layer@tom-wander.service.d
 awk '/^```ini$/ {on = ++count == 1; next} /^```$/ {on = 0} on' deploy/README.md \
   | box sh -c 'cat >/etc/systemd/system/subsumed-layer@tom-wander.service.d/creature.conf'
 box systemctl daemon-reload
-box systemctl -q add-wants subsumed@tom subsumed-layer@tom-wander
+box systemctl -q add-wants subsumed@tom.service subsumed-layer@tom-wander.service || fail "the layer cannot be wanted"
 box systemctl start subsumed-layer@tom-wander || fail "the layer does not start"
 until_true "the layer attaches" attached
 until_true "tom moves" goes_on
