@@ -2,7 +2,6 @@
 //!
 //! Must never touch a real-time thread, nor decide anything but who broke the policy.
 
-use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};
 use std::thread::JoinHandle;
@@ -110,13 +109,6 @@ impl Watcher {
             .note_causes("halt", None, &causes.names(), text);
     }
 
-    /// How often each cause came up, by its name; those that never did as well.
-    fn halts(&self) -> BTreeMap<&'static str, u64> {
-        let counts = self.shared.halt.counts();
-        let of = |cause| counts.iter().find(|c| c.cause == cause).map_or(0, |c| c.count);
-        Causes::named().map(|(cause, name)| (name, of(cause))).collect()
-    }
-
     fn count(&self, counted: &CauseCount, causes: Causes) -> Value {
         json!({
             "cause": counted.cause.names().join(""), "count": counted.count,
@@ -173,7 +165,6 @@ impl Watcher {
                 "since_s": since.since(self.began).seconds(), "latched": causes.has(Causes::LATCHED),
                 "counts": self.shared.halt.counts().iter().map(|c| self.count(c, causes)).collect::<Vec<_>>(),
             },
-            "halts": self.halts(),
             "wires": wires, "taps": taps, "layers": layers, "events": newest,
             "real_time_allocations": alloc::broken(),
         });

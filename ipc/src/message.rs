@@ -85,7 +85,10 @@ impl Kind {
     /// Whether `words` is a message of this kind with every number between `low` and `high`.
     /// Not-a-number and infinities never are; a bit is 0 or 1.
     #[inline]
-    pub fn accepts(self, words: &Words, low: f64, high: f64) -> bool {
+    ///
+    /// # Panics
+    /// When there are fewer words than such a message has.
+    pub fn accepts(self, words: &[f64], low: f64, high: f64) -> bool {
         let used = &words[..self.words()];
         match self {
             Kind::Bit => used[0] == 0.0 || used[0] == 1.0,

@@ -15,6 +15,7 @@ pub mod link;
 pub mod office;
 pub mod process;
 pub mod remote;
+mod rover;
 pub mod warehouse;
 
 use std::any::Any;

@@ -1,90 +1,45 @@
 //! `warehouse`: Allen's body in a world of another making, the `warehouse` crate.
 //!
-//! ```text
-//!  in:  ping (fires the ring), turn rad/s, forward m/s      out: sonar m, compass rad, odometry
-//! ```
-//! The ports that levels 0 and 1 need, under the same names: their wiring files are used as they are.
+//! The ports of the `rover` (see rover.rs) and no others.
 
 use ::warehouse::{ROBOT_RADIUS_M, Warehouse};
-use ipc::clock::{Span, Time};
-use ipc::message::{Kind, Map, Payload, Pose};
-use ipc::wiring::{Declaration, Parameter, Port, Setting, Takes};
+use ipc::clock::Time;
+use ipc::message::Pose;
+use ipc::wiring::{Declaration, Parameter, Setting};
 use serde_json::{Value, json};
 
+use super::rover::{self, FORWARD, PING, Progress, TURN};
 use super::{BodyKind, Place, World, WorldEnd};
 
-const PING: usize = 0;
-const TURN: usize = 1;
-const FORWARD: usize = 2;
-
-const SONAR: usize = 0;
-const COMPASS: usize = 1;
-const ODOMETRY: usize = 2;
-
 /// The kind `warehouse`.
-pub static KIND: BodyKind = BodyKind {
-    declaration: &DECLARATION,
-    motion: &[TURN, FORWARD],
-    forward: Some(FORWARD),
-    stale: Span::millis(200),
-    build,
-};
+pub static KIND: BodyKind = rover::kind(&DECLARATION, build);
 
 static DECLARATION: Declaration = Declaration {
     name: "warehouse",
     about: "a round robot with twelve sonars in a simulated warehouse, a world of another making than the office",
     diagram: "ping -> sonar; turn, forward -> motion -> compass, odometry",
-    inputs: &[
-        Port::new("ping", Kind::Pulse, "fires the ring of sonars"),
-        Port::new("turn", Kind::Number, "turning rate")
-            .unit("rad/s")
-            .between(-10.0, 10.0),
-        Port::new("forward", Kind::Number, "forward speed")
-            .unit("m/s")
-            .between(-2.0, 2.0),
-    ],
-    outputs: &[
-        Port::new("sonar", Kind::Map, "what the ring heard, straight ahead first")
-            .unit("m")
-            .between(0.0, 100.0),
-        Port::new("compass", Kind::Number, "which way the robot faces").unit("rad"),
-        Port::new("odometry", Kind::Pose, "where the wheels think they are"),
-    ],
+    inputs: rover::COMMANDS,
+    outputs: rover::SENSES,
     parameters: &[
-        number("people", 6.0, 20.0, "people who walk about the aisles"),
-        number(
+        Parameter::number("people", 6.0, "people who walk about the aisles")
+            .between(0.0, 20.0)
+            .unit("1"),
+        Parameter::number(
             "number",
             1.0,
-            1e15,
             "the seed of the floor and of all that happens on it",
-        ),
-        Parameter {
-            name: "empty",
-            takes: Takes::Bit { default: Some(false) },
-            unit: "",
-            about: "one empty hall of 8 m by 6 m instead",
-        },
+        )
+        .between(0.0, 1e15)
+        .unit("1"),
+        Parameter::bit("empty", false, "one empty hall of 8 m by 6 m instead"),
     ],
 };
-
-const fn number(name: &'static str, default: f64, high: f64, about: &'static str) -> Parameter {
-    Parameter {
-        name,
-        takes: Takes::Number {
-            low: 0.0,
-            high,
-            default: Some(default),
-        },
-        unit: "1",
-        about,
-    }
-}
 
 /// The robot's body and the warehouse around it.
 pub struct WarehouseWorld {
     /// The simulation.
     pub warehouse: Warehouse,
-    last: Option<Time>,
+    progress: Progress,
     sonar: [f64; 12],
 }
 
@@ -99,32 +54,23 @@ fn build(settings: &[Setting], _seed: u64, _start: Option<Place>) -> Box<dyn Wor
     };
     Box::new(WarehouseWorld {
         warehouse: Warehouse::new(*number as u64, *people as usize, *empty),
-        last: None,
+        progress: Progress::default(),
         sonar: [10.0; 12],
     })
 }
 
-/// Longest step of the physics, and longest gap made up for.
-const STEP_MAX: Span = Span::millis(20);
-const GAP_MAX: Span = Span::secs(1);
-
 impl World for WarehouseWorld {
     fn tick(&mut self, now: Time, link: &mut WorldEnd) {
         let (forward, turn) = (link.motion(FORWARD)[0], link.motion(TURN)[0]);
-        let gap = self.last.replace(now).map_or(Span::ZERO, |last| now.since(last));
-        let mut left = gap.0.min(GAP_MAX.0);
-        while left > 0 {
-            let step = Span(left.min(STEP_MAX.0));
-            self.warehouse.step(step.seconds(), forward, turn);
-            left -= step.0;
+        for step_s in self.progress.steps_to(now) {
+            self.warehouse.step(step_s, forward, turn);
         }
         if link.order(PING).is_some() {
             self.sonar = self.warehouse.sonar();
-            link.tell(SONAR, now, &Map { ranges: self.sonar }.pack());
+            rover::tell_sonar(link, now, self.sonar);
         }
         let (x, y, heading) = self.warehouse.believed();
-        link.tell(COMPASS, now, &heading.pack());
-        link.tell(ODOMETRY, now, &Pose { x, y, heading }.pack());
+        rover::tell_pose(link, now, Pose { x, y, heading });
     }
 
     fn view(&self) -> Value {

@@ -6,6 +6,8 @@ use std::fmt::Write as _;
 
 use serde_json::Value;
 
+use crate::gate::Causes;
+
 /// Upper bounds of latency buckets: 1 µs doubling to about a second.
 const BUCKETS: u32 = 21;
 
@@ -93,8 +95,13 @@ pub fn text(status: &Value) -> String {
         "counter",
         "How often the body was halted, by cause.",
     );
-    for (cause, count) in status["halts"].as_object().into_iter().flatten() {
-        page.sample("subsumed_halts_total", &[("cause", cause)], number(count));
+    // Those that never came up as well: an alert needs a counter that is there before it counts.
+    for (_, cause) in Causes::named() {
+        let counts = status["halt"]["counts"].as_array().into_iter().flatten();
+        let counted = counts
+            .filter(|c| c["cause"] == cause)
+            .map(|c| number(&c["count"]));
+        page.sample("subsumed_halts_total", &[("cause", cause)], counted.sum());
     }
     page.family(
         "subsumed_attached_layers",
@@ -266,7 +273,7 @@ mod tests {
             "wires": [{"wire": "turn.rate", "messages": 77}],
             "taps": [{"from": "avoid.heading", "to": "turn.heading", "kind": "suppress", "holds": true,
                       "delivered": 5, "rejected": 6, "faults": 0}],
-            "halt": {"halted": true}, "halts": {"emergency stop": 3, "start": 1},
+            "halt": {"halted": true, "counts": [{"cause": "emergency stop", "count": 3}, {"cause": "start", "count": 1}]},
         })
     }
 
@@ -339,6 +346,11 @@ mod tests {
         assert_eq!(
             samples[&format!("subsumed_halts_total{{{creature},cause=\"emergency stop\"}}")],
             3.0
+        );
+        assert_eq!(
+            samples[&format!("subsumed_halts_total{{{creature},cause=\"vital layer late\"}}")],
+            0.0,
+            "what never came up is counted from the start"
         );
         assert_eq!(samples[&format!("subsumed_attached_layers{{{creature}}}")], 1.0);
         assert_eq!(samples[&format!("subsumed_halted{{{creature}}}")], 1.0);

@@ -123,7 +123,7 @@ impl Cell {
     /// Takes the newest message's first `N` words into `words`, which stay as they were if there never was one
     /// or if none could be read whole in [`TRIES_MAX`] tries; else its number and its stamp.
     #[inline(always)]
-    fn take<const N: usize>(&self, words: &mut Words) -> Option<(u64, Time)> {
+    fn take<const N: usize>(&self, words: &mut [f64]) -> Option<(u64, Time)> {
         match self.attempt::<N>(words) {
             Attempt::Whole(number, stamp) => Some((number, stamp)),
             Attempt::Empty => None,
@@ -133,7 +133,7 @@ impl Cell {
 
     /// The further tries of [`Cell::take`]: rare, so kept out of the way.
     #[cold]
-    fn retry<const N: usize>(&self, words: &mut Words) -> Option<(u64, Time)> {
+    fn retry<const N: usize>(&self, words: &mut [f64]) -> Option<(u64, Time)> {
         for _ in 1..TRIES_MAX {
             super::sync::pause();
             match self.attempt::<N>(words) {
@@ -146,7 +146,7 @@ impl Cell {
     }
 
     #[inline(always)]
-    fn attempt<const N: usize>(&self, words: &mut Words) -> Attempt {
+    fn attempt<const N: usize>(&self, words: &mut [f64]) -> Attempt {
         // Pairs with the release store that ends `put`.
         let before = self.sequence.load(Ordering::Acquire);
         if before == 0 {
@@ -168,7 +168,7 @@ impl Cell {
 
     /// As [`Cell::take`], for a message of `kind`.
     #[inline(always)]
-    pub(crate) fn take_words(&self, kind: Kind, words: &mut Words) -> Option<(u64, Time)> {
+    pub(crate) fn take_words(&self, kind: Kind, words: &mut [f64]) -> Option<(u64, Time)> {
         match kind.single() {
             true => self.take::<1>(words),
             false => self.take_others(kind.words(), words),
@@ -176,7 +176,7 @@ impl Cell {
     }
 
     /// Messages that are not one word long.
-    fn take_others(&self, length: usize, words: &mut Words) -> Option<(u64, Time)> {
+    fn take_others(&self, length: usize, words: &mut [f64]) -> Option<(u64, Time)> {
         match length {
             0 => self.take::<0>(words),
             2 => self.take::<2>(words),

@@ -25,6 +25,7 @@ pub type Plug = u32;
 
 /// A tap as it is joined to a port.
 #[derive(Debug)]
+#[repr(C)]
 pub struct TapEnd {
     /// Where its messages come from.
     pub reader: Reader,
@@ -134,19 +135,20 @@ pub struct TapCounts {
     pub faults: u64,
 }
 
-/// A tap with what was last seen of it.
+/// A tap with what was last seen of it. What a beat touches of a silent one comes first and lies together.
 #[derive(Debug)]
+#[repr(C)]
 pub(super) struct Joined {
-    pub(super) end: TapEnd,
     pub(super) seen: u64,
     pub(super) window: Option<Window>,
-    pub(super) words: Words,
     /// Whether its newest message came in at the last look.
     pub(super) fresh: bool,
     /// What became of the message that the last look took in, if it took one in.
     pub(super) fate: Option<Fate>,
     /// Told to go; stays until its window has run out, so that nothing rejected comes back to life.
     pub(super) leaving: bool,
+    pub(super) end: TapEnd,
+    pub(super) words: Words,
 }
 
 impl Joined {
@@ -261,6 +263,10 @@ pub(super) fn join(taps: &mut Vec<Joined>, mut end: TapEnd) -> Result<(), TapEnd
         let mut room = std::mem::take(&mut end.room.0);
         room.append(taps);
         end.room.0 = std::mem::replace(taps, room);
+    }
+    if taps.len() == taps.capacity() {
+        // One more than there is: a vector left to itself takes room for four at once.
+        taps.reserve_exact(1);
     }
     let place = taps
         .iter()

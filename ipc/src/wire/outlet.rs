@@ -24,16 +24,18 @@ pub struct OutputCounts {
     pub inhibited: u64,
 }
 
-/// The writing end behind one output port.
+/// The writing end behind one output port. Its words come last: a beat touches the first of them alone where
+/// messages are one word.
 #[derive(Debug)]
+#[repr(C)]
 pub struct Outlet {
     writer: Writer,
     /// Whether there is a message for the end of the beat.
     staged: bool,
-    /// Its words, or those of the last one.
-    words: Words,
     taps: Vec<Joined>,
     counts: OutputCounts,
+    /// The words of the message staged, or of the last one.
+    words: Words,
 }
 
 impl Outlet {

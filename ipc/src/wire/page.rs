@@ -191,7 +191,7 @@ impl Reader {
     /// Takes the newest message's words into `words` if it is not number `seen`; else, and where none could be
     /// read whole, they stay as they were. Its number and stamp. The common answer, none, costs one load.
     #[inline(always)]
-    pub(super) fn take_newer(&self, seen: u64, words: &mut Words) -> Option<(u64, Time)> {
+    pub(super) fn take_newer(&self, seen: u64, words: &mut [f64]) -> Option<(u64, Time)> {
         // SAFETY: `_page` keeps the cell mapped.
         let cell = unsafe { self.cell.as_ref() };
         if !cell.changed(seen) {

@@ -30,7 +30,7 @@ pub struct Limits {
 
 impl Limits {
     #[inline]
-    pub(super) fn accept(&self, words: &Words) -> bool {
+    pub(super) fn accept(&self, words: &[f64]) -> bool {
         if self.kind == Kind::Number {
             // The bounds are finite, so what is no number or infinite is not between them.
             return (self.low..=self.high).contains(&words[0]);
@@ -51,7 +51,11 @@ pub struct InputCounts {
 }
 
 /// The register behind one input port.
+///
+/// What a beat touches for a message of one word lies in the first two lines of the processor's cache: with a
+/// thousand modules a beat waits for memory, not for arithmetic.
 #[derive(Debug)]
+#[repr(C, align(64))]
 pub struct Register {
     limits: Limits,
     wire: Option<Reader>,
@@ -59,17 +63,17 @@ pub struct Register {
     taps: Vec<Joined>,
     /// Whether a message is held.
     holds: bool,
-    /// The message held, with its stamp.
-    held: (Time, Words),
     /// Whether a message was delivered since the last gather.
     pending: bool,
     arrived: bool,
     /// What became of the existing wire's message at the last look, if there was one: number `seen`.
     looked: Option<Fate>,
     counts: InputCounts,
-    /// Where a message of the existing wire is looked at before it is let in.
-    incoming: Words,
+    /// The message held, with its stamp.
+    held: (Time, Words),
 }
+
+const _: () = assert!(std::mem::offset_of!(Register, held) + size_of::<(Time, f64)>() <= 128);
 
 /// A message that may be let in: the existing wire's, or that of the k-th tap.
 #[derive(Clone, Copy)]
@@ -91,12 +95,11 @@ impl Register {
             seen: 0,
             taps: Vec::new(),
             holds: false,
-            held: (Time::ZERO, [0.0; WORDS_MAX]),
             pending: false,
             arrived: false,
             looked: None,
             counts: InputCounts::default(),
-            incoming: [0.0; WORDS_MAX],
+            held: (Time::ZERO, [0.0; WORDS_MAX]),
         }
     }
 
@@ -125,10 +128,28 @@ impl Register {
     /// overwrite each other. On the virtual clock it lets every message meet the rules, not only the newest.
     #[inline]
     pub fn look(&mut self, now: Time, gone: impl FnMut(TapEnd)) {
-        let original = self.newest_original(now);
+        // Most messages are one word: those never touch the other eleven.
+        if self.limits.kind.single() {
+            self.look_at::<1>(now, gone);
+        } else {
+            self.look_at_many(now, gone);
+        }
+    }
+
+    /// [`Register::look`] for messages of several words: rare, so kept out of the way.
+    #[inline(never)]
+    fn look_at_many(&mut self, now: Time, gone: impl FnMut(TapEnd)) {
+        self.look_at::<WORDS_MAX>(now, gone);
+    }
+
+    /// [`Register::look`] for messages of up to `N` words.
+    #[inline(always)]
+    fn look_at<const N: usize>(&mut self, now: Time, gone: impl FnMut(TapEnd)) {
+        let mut incoming = [0.0; N];
+        let original = self.newest_original(now, &mut incoming);
         if self.taps.is_empty() {
             if let Some(stamp) = original {
-                self.deliver(stamp, From::Wire);
+                self.deliver(stamp, &incoming);
             }
             return;
         }
@@ -138,11 +159,11 @@ impl Register {
             fresh |= tap.fresh;
         }
         if fresh {
-            self.series(original);
+            self.series(original, &incoming);
         } else if let Some(stamp) = original {
             // No tap spoke: what it decides hangs on the windows alone.
             if self.passes_from(0, stamp) {
-                self.deliver(stamp, From::Wire);
+                self.deliver(stamp, &incoming);
             } else {
                 self.counts.rejected += 1;
                 self.looked = Some(Fate::Rejected);
@@ -152,8 +173,8 @@ impl Register {
     }
 
     /// Lets in the newest message of the series, in a beat in which at least one tap spoke. `original` is the
-    /// stamp of the existing wire's message, if one came.
-    fn series(&mut self, original: Option<Time>) {
+    /// stamp of the existing wire's message, if one came, and `incoming` its words.
+    fn series<const N: usize>(&mut self, original: Option<Time>, incoming: &[f64; N]) {
         let in_hindsight = self.rejected_in_hindsight();
         if in_hindsight {
             self.holds = false;
@@ -187,8 +208,14 @@ impl Register {
                 }
             }
         }
-        if let Some((stamp, from)) = newest {
-            self.deliver(stamp, from);
+        match newest {
+            Some((stamp, From::Wire)) => self.deliver(stamp, incoming),
+            Some((stamp, From::Tap(k))) => {
+                let mut words = [0.0; N];
+                words.copy_from_slice(&self.taps[k].words[..N]);
+                self.deliver(stamp, &words);
+            }
+            None => {}
         }
     }
 
@@ -214,14 +241,14 @@ impl Register {
     }
 
     /// The stamp of the existing wire's newest message, if it was not seen before and is one; its words are
-    /// then those incoming.
-    #[inline]
-    fn newest_original(&mut self, now: Time) -> Option<Time> {
+    /// then those `incoming`.
+    #[inline(always)]
+    fn newest_original(&mut self, now: Time, incoming: &mut [f64]) -> Option<Time> {
         self.looked = None;
-        let (number, stamp) = self.wire.as_ref()?.take_newer(self.seen, &mut self.incoming)?;
+        let (number, stamp) = self.wire.as_ref()?.take_newer(self.seen, incoming)?;
         self.seen = number;
         match plausible(stamp, now) {
-            Some(stamp) if self.limits.accept(&self.incoming) => {
+            Some(stamp) if self.limits.accept(incoming) => {
                 self.looked = Some(Fate::Delivered);
                 Some(stamp)
             }
@@ -248,22 +275,14 @@ impl Register {
     }
 
     #[inline]
-    fn deliver(&mut self, stamp: Time, from: From) {
+    fn deliver<const N: usize>(&mut self, stamp: Time, words: &[f64; N]) {
         self.counts.delivered += 1;
         // Writes of other threads may be seen out of order: what is older than the message held was
         // overwritten by it.
         if self.holds && stamp < self.held.0 {
             return;
         }
-        let words = match from {
-            From::Wire => &self.incoming,
-            From::Tap(k) => &self.taps[k].words,
-        };
-        if self.limits.kind.single() {
-            self.held.1[0] = words[0];
-        } else {
-            self.held.1 = *words;
-        }
+        self.held.1[..N].copy_from_slice(words);
         self.held.0 = stamp;
         self.holds = true;
         self.pending = true;

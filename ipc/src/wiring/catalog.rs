@@ -162,6 +162,80 @@ pub struct Parameter {
     pub about: &'static str,
 }
 
+impl Parameter {
+    /// A parameter without a unit.
+    pub const fn new(name: &'static str, takes: Takes, about: &'static str) -> Parameter {
+        Parameter {
+            name,
+            takes,
+            unit: "",
+            about,
+        }
+    }
+
+    /// Any finite number, with a default.
+    pub const fn number(name: &'static str, default: f64, about: &'static str) -> Parameter {
+        Parameter::new(name, Takes::number(default), about)
+    }
+
+    /// A length of time, with a default.
+    pub const fn span(name: &'static str, default: Span, about: &'static str) -> Parameter {
+        let default = Some(default);
+        Parameter::new(name, Takes::Span { default }, about)
+    }
+
+    /// Yes or no, with a default.
+    pub const fn bit(name: &'static str, default: bool, about: &'static str) -> Parameter {
+        let default = Some(default);
+        Parameter::new(name, Takes::Bit { default }, about)
+    }
+
+    /// One of some words, with a default.
+    pub const fn word(
+        name: &'static str,
+        words: &'static [&'static str],
+        default: &'static str,
+        about: &'static str,
+    ) -> Parameter {
+        let default = Some(default);
+        Parameter::new(name, Takes::Word { words, default }, about)
+    }
+
+    /// The same parameter, which must be given.
+    pub const fn needed(mut self) -> Parameter {
+        match &mut self.takes {
+            Takes::Number { default, .. } => *default = None,
+            Takes::Span { default } => *default = None,
+            Takes::Bit { default } => *default = None,
+            Takes::Word { default, .. } => *default = None,
+            Takes::Numbers { default, .. } => *default = None,
+            Takes::Spans { default, .. } => *default = None,
+        }
+        self
+    }
+
+    /// The same parameter, taking only numbers from `least` to `largest`.
+    ///
+    /// # Panics
+    /// When it takes no numbers: in a declaration, then, that doesn't compile.
+    pub const fn between(mut self, least: f64, largest: f64) -> Parameter {
+        match &mut self.takes {
+            Takes::Number { low, high, .. } | Takes::Numbers { low, high, .. } => {
+                *low = least;
+                *high = largest;
+            }
+            _ => panic!("only numbers lie between numbers"),
+        }
+        self
+    }
+
+    /// The same parameter with a unit.
+    pub const fn unit(mut self, unit: &'static str) -> Parameter {
+        self.unit = unit;
+        self
+    }
+}
+
 /// What a kind of module looks like from outside.
 #[derive(Clone, Copy, Debug)]
 pub struct Declaration {

@@ -6,7 +6,7 @@
 
 use ipc::clock::Span;
 use ipc::message::Kind;
-use ipc::wiring::{Parameter, Port, Takes};
+use ipc::wiring::{Parameter, Port};
 
 /// Largest rate, factor or bound that a parameter takes: far beyond any robot's, and far enough below the
 /// largest number that one of them times a message of the same size is still a number.
@@ -29,12 +29,14 @@ pub(crate) const fn number(
     unit: &'static str,
     about: &'static str,
 ) -> Parameter {
-    ranged(name, [-NUMBER_MAX, NUMBER_MAX], Some(default), unit, about)
+    Parameter::number(name, default, about)
+        .between(-NUMBER_MAX, NUMBER_MAX)
+        .unit(unit)
 }
 
 /// A number of either sign that must be given.
 pub(crate) const fn needed(name: &'static str, unit: &'static str, about: &'static str) -> Parameter {
-    ranged(name, [-NUMBER_MAX, NUMBER_MAX], None, unit, about)
+    number(name, 0.0, unit, about).needed()
 }
 
 /// A number that is not negative, with a default.
@@ -44,55 +46,17 @@ pub(crate) const fn positive(
     unit: &'static str,
     about: &'static str,
 ) -> Parameter {
-    ranged(name, [0.0, NUMBER_MAX], Some(default), unit, about)
-}
-
-/// A number within a range.
-pub(crate) const fn ranged(
-    name: &'static str,
-    [low, high]: [f64; 2],
-    default: Option<f64>,
-    unit: &'static str,
-    about: &'static str,
-) -> Parameter {
-    Parameter {
-        name,
-        takes: Takes::Number { low, high, default },
-        unit,
-        about,
-    }
+    Parameter::number(name, default, about)
+        .between(0.0, NUMBER_MAX)
+        .unit(unit)
 }
 
 /// A length of time that must be given.
 pub(crate) const fn span(name: &'static str, about: &'static str) -> Parameter {
-    Parameter {
-        name,
-        takes: Takes::Span { default: None },
-        unit: "",
-        about,
-    }
+    Parameter::span(name, Span::ZERO, about).needed()
 }
 
 /// A length of time that need not be given; [`Span::ZERO`] if it is not.
 pub(crate) const fn span_or_none(name: &'static str, about: &'static str) -> Parameter {
-    Parameter {
-        name,
-        takes: Takes::Span {
-            default: Some(Span::ZERO),
-        },
-        unit: "",
-        about,
-    }
-}
-
-/// Yes or no, with a default.
-pub(crate) const fn bit(name: &'static str, default: bool, about: &'static str) -> Parameter {
-    Parameter {
-        name,
-        takes: Takes::Bit {
-            default: Some(default),
-        },
-        unit: "",
-        about,
-    }
+    Parameter::span(name, Span::ZERO, about)
 }

@@ -4,6 +4,8 @@
 
 use std::fmt::Write as _;
 
+use graph::xml::escaped;
+
 use crate::figures::COLUMNS;
 use crate::measure::Measured;
 use crate::statistics::Estimate;
@@ -59,10 +61,10 @@ pub fn svg(measured: &[Measured]) -> String {
 fn bar(out: &mut String, (x, y): (f64, f64), label: &str, estimate: &Estimate, top: f64, decimals: usize) {
     let (_, labels, bars, line, _) = PANEL;
     let (left, middle) = (x + labels + 8.0, y + line / 2.0);
-    let mut shown = label.replace('&', "&amp;").replace('<', "&lt;");
-    if shown.len() > 36 {
-        shown = shown.chars().take(35).chain(['…']).collect();
-    }
+    let shown = match label.char_indices().nth(36) {
+        Some(_) => escaped(&label.chars().take(35).chain(['…']).collect::<String>()),
+        None => escaped(label),
+    };
     let _ = writeln!(
         out,
         "<text x=\"{}\" y=\"{}\" text-anchor=\"end\" font-size=\"10\">{shown}</text>",

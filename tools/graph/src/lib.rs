@@ -26,6 +26,7 @@ mod route;
 mod solve;
 mod svg;
 mod widths;
+pub mod xml;
 
 pub use dot::dot;
 pub use drawing::{At, Circle, Drawing, Frame, Line, RADIUS, Shape, Strip, Wire};

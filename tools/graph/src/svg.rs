@@ -8,6 +8,7 @@ use ipc::wiring::creature::How;
 
 use crate::compact::{CONSTANT, LABEL, NAME, PORT};
 use crate::drawing::{At, Circle, Drawing, Frame, Line, RADIUS, Shape, Strip, Wire};
+use crate::xml::escaped;
 
 /// What the SVG is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -57,8 +58,8 @@ pub fn svg(drawing: &Drawing, dress: Dress) -> String {
         "<svg xmlns=\"http://www.w3.org/2000/svg\" class=\"creature\" width=\"{width}\" height=\"{height}\" \
          viewBox=\"0 0 {width} {height}\" role=\"{}\">\n<title>{}</title>\n<desc>{}</desc>\n",
         if dress == Dress::File { "img" } else { "group" },
-        escape(&format!("{}: wiring", drawing.name)),
-        escape(&describe(drawing)),
+        escaped(&format!("{}: wiring", drawing.name)),
+        escaped(&describe(drawing)),
     );
     if dress == Dress::File {
         let _ = writeln!(out, "<style>{STYLE}</style>");
@@ -101,7 +102,7 @@ pub fn svg(drawing: &Drawing, dress: Dress) -> String {
         let _ = writeln!(
             out,
             "<text class=\"fault\" x=\"12\" y=\"{y}\" font-size=\"{PORT}\">{}</text>",
-            escape(&fault.replace('\n', "; "))
+            escaped(&fault.replace('\n', "; "))
         );
     }
     out.push_str("</svg>\n");
@@ -125,23 +126,6 @@ fn describe(drawing: &Drawing) -> String {
     )
 }
 
-/// `text` as it may stand in XML, in text and in attributes.
-fn escape(text: &str) -> String {
-    let mut out = String::with_capacity(text.len());
-    for c in text.chars() {
-        match c {
-            '&' => out.push_str("&amp;"),
-            '<' => out.push_str("&lt;"),
-            '>' => out.push_str("&gt;"),
-            '"' => out.push_str("&quot;"),
-            '\n' => out.push_str("&#10;"),
-            c if c.is_control() => out.push('\u{fffd}'),
-            c => out.push(c),
-        }
-    }
-    out
-}
-
 fn strip(out: &mut String, band: &Strip, width: f64) {
     let Strip {
         top, bottom, level, ..
@@ -150,7 +134,7 @@ fn strip(out: &mut String, band: &Strip, width: f64) {
         format!(
             "<text class=\"process\" x=\"20\" y=\"{}\" font-size=\"{PORT}\">{}</text>",
             top + 51.0,
-            escape(p)
+            escaped(p)
         )
     });
     let _ = writeln!(
@@ -164,13 +148,13 @@ fn strip(out: &mut String, band: &Strip, width: f64) {
         top + 20.0,
         top + 36.0,
         process.collect::<String>(),
-        name = escape(&band.name),
+        name = escaped(&band.name),
     );
 }
 
 fn title(fault: Option<&String>, words: &str) -> String {
     let words = fault.map_or(words.to_string(), |f| format!("{words}\n{f}"));
-    format!("<title>{}</title>", escape(&words))
+    format!("<title>{}</title>", escaped(&words))
 }
 
 fn marked(class: &str, fault: bool) -> String {
@@ -188,7 +172,7 @@ fn net_of(out: &mut String, wire: &Wire, crossings: &[At]) {
         "<g class=\"{}\" data-wire=\"{name}\">{}",
         marked("net", faulty),
         title(None, &wire.name),
-        name = escape(&wire.name),
+        name = escaped(&wire.name),
     );
     for b in &wire.branches {
         branch(out, b, &wire.name, crossings);
@@ -200,7 +184,7 @@ fn net_of(out: &mut String, wire: &Wire, crossings: &[At]) {
         let _ = write!(
             out,
             "<text class=\"label\" x=\"{x}\" y=\"{y}\" font-size=\"{LABEL}\">{}</text>",
-            escape(label)
+            escaped(label)
         );
     }
     out.push_str("</g>\n");
@@ -223,7 +207,7 @@ fn branch(out: &mut String, b: &Line, from: &str, crossings: &[At]) {
         out,
         "<g class=\"{}\" data-to=\"{}\">{}<path class=\"line\" d=\"{}\"/>{}</g>",
         marked(class, b.fault.is_some()),
-        escape(&b.to),
+        escaped(&b.to),
         title(b.fault.as_ref(), words),
         path(&b.points, crossings),
         match b.tap {
@@ -350,7 +334,7 @@ fn box_of(out: &mut String, f: &Frame) {
         f.right - f.left,
         f.bottom - f.top,
         f.top + below,
-        name = escape(&f.name),
+        name = escaped(&f.name),
     );
     if f.shape == Shape::Module {
         for (port, y) in &f.inputs {
@@ -359,7 +343,7 @@ fn box_of(out: &mut String, f: &Frame) {
                 "<text class=\"port\" x=\"{}\" y=\"{}\" font-size=\"{PORT}\">{}</text>",
                 f.left + 6.0,
                 y + 3.5,
-                escape(port)
+                escaped(port)
             );
         }
     }
@@ -380,12 +364,12 @@ fn circle(out: &mut String, tap: &Circle) {
          <text class=\"letter\" x=\"{x}\" y=\"{}\" text-anchor=\"middle\" font-size=\"11\">{letter}</text>\
          <text class=\"constant\" x=\"{}\" y=\"{}\" font-size=\"{CONSTANT}\">{}</text></g>",
         marked("tap", tap.fault.is_some()),
-        escape(&format!("{}>{}", tap.from, tap.to)),
+        escaped(&format!("{}>{}", tap.from, tap.to)),
         if letter == "S" { "suppress" } else { "inhibit" },
         title(tap.fault.as_ref(), &words),
         y + 4.0,
         x + RADIUS - 1.0,
         y - RADIUS + 1.0,
-        escape(&tap.constant),
+        escaped(&tap.constant),
     );
 }

@@ -4,6 +4,7 @@
 
 use std::fmt::Write as _;
 
+use graph::xml::escaped;
 use serde_json::{Value, json};
 
 use crate::judge::Failure;
@@ -109,23 +110,5 @@ pub fn junit(verdicts: &[Verdict], seconds: &[f64]) -> String {
         let _ = writeln!(out, "  </testcase>");
     }
     out.push_str("</testsuite>\n");
-    out
-}
-
-/// Text as XML holds it: control characters that XML does not have are shown as �.
-fn escaped(text: &str) -> String {
-    let mut out = String::new();
-    for c in text.chars() {
-        match c {
-            '&' => out.push_str("&amp;"),
-            '<' => out.push_str("&lt;"),
-            '>' => out.push_str("&gt;"),
-            '"' => out.push_str("&quot;"),
-            '\n' => out.push_str("&#10;"),
-            '\t' => out.push_str("&#9;"),
-            c if c.is_control() => out.push('\u{fffd}'),
-            c => out.push(c),
-        }
-    }
     out
 }

@@ -22,18 +22,8 @@ pub static KIND: ModuleKind = ModuleKind {
         inputs: &[Port::new("heard", Kind::@KIND@, "what to sway about").unit("@UNIT@")],
         outputs: &[Port::new("said", Kind::@KIND@, "a little beside it").unit("@UNIT@")],
         parameters: &[
-            Parameter {
-                name: "every",
-                takes: Takes::Span { default: Some(Span::millis(500)) },
-                unit: "",
-                about: "time between two messages",
-            },
-            Parameter {
-                name: "by",
-                takes: Takes::number(0.25),
-                unit: "@BY@",
-                about: "how far it sways",
-            },
+            Parameter::span("every", Span::millis(500), "time between two messages"),
+            Parameter::number("by", 0.25, "how far it sways").unit("@BY@"),
         ],
     },
     build: |settings| Box::new(Sway::new(settings)),

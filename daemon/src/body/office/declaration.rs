@@ -6,25 +6,17 @@ use ipc::clock::Span;
 use ipc::message::Kind;
 use ipc::wiring::{Declaration, Parameter, Port, Takes};
 
+use crate::body::rover;
+
 pub(super) static DECLARATION: Declaration = Declaration {
     name: "office",
     about: "Allen's body, a round robot with twelve sonars and a range camera, in a simulated office with people",
     diagram: "ping -> sonar; turn, forward -> motion -> compass, odometry; every picture: fan",
-    inputs: &[
-        Port::new("ping", Kind::Pulse, "fires the ring of sonars"),
-        Port::new("turn", Kind::Number, "turning rate")
-            .unit("rad/s")
-            .between(-10.0, 10.0),
-        Port::new("forward", Kind::Number, "forward speed")
-            .unit("m/s")
-            .between(-2.0, 2.0),
-    ],
+    inputs: rover::COMMANDS,
     outputs: &[
-        Port::new("sonar", Kind::Map, "what the ring heard, straight ahead first")
-            .unit("m")
-            .between(0.0, 100.0),
-        Port::new("compass", Kind::Number, "which way the robot faces").unit("rad"),
-        Port::new("odometry", Kind::Pose, "where the wheels think they are"),
+        rover::SENSES[0],
+        rover::SENSES[1],
+        rover::SENSES[2],
         Port::new(
             "fan",
             Kind::Map,
@@ -41,61 +33,60 @@ pub(super) static DECLARATION: Declaration = Declaration {
         .between(0.0, 1.0),
     ],
     parameters: &[
-        count("people", 6.0, 40.0, "people who walk about"),
-        count("attackers", 2.0, 20.0, "people who walk straight at the robot"),
-        Parameter {
-            name: "layout",
-            takes: Takes::Word {
-                words: &["office", "empty", "kept", "generated"],
-                default: Some("office"),
-            },
-            unit: "",
-            about: "the standard office, one empty room of 8 m by 6 m, one of the ten kept, one drawn from a seed",
-        },
-        count(
+        Parameter::number("people", 6.0, "people who walk about")
+            .between(0.0, 40.0)
+            .unit("1"),
+        Parameter::number("attackers", 2.0, "people who walk straight at the robot")
+            .between(0.0, 20.0)
+            .unit("1"),
+        Parameter::word(
+            "layout",
+            &["office", "empty", "kept", "generated"],
+            "office",
+            "the standard office, one empty room of 8 m by 6 m, one of the ten kept, one drawn from a seed",
+        ),
+        Parameter::number(
             "number",
             1.0,
-            1e15,
             "which of the kept offices, or the seed of a generated one",
-        ),
-        count(
-            "talkers",
-            0.0,
-            20.0,
-            "people who stand in groups of three and talk",
-        ),
-        count("cornerers", 0.0, 10.0, "people who corner the robot"),
-        number("noise", 0.02, 1.0, "m", "error of a sonar range, one sigma"),
-        number("dropout", 0.01, 1.0, "1", "share of sonar ranges that are lost"),
-        number(
+        )
+        .between(0.0, 1e15)
+        .unit("1"),
+        Parameter::number("talkers", 0.0, "people who stand in groups of three and talk")
+            .between(0.0, 20.0)
+            .unit("1"),
+        Parameter::number("cornerers", 0.0, "people who corner the robot")
+            .between(0.0, 10.0)
+            .unit("1"),
+        Parameter::number("noise", 0.02, "error of a sonar range, one sigma")
+            .between(0.0, 1.0)
+            .unit("m"),
+        Parameter::number("dropout", 0.01, "share of sonar ranges that are lost")
+            .between(0.0, 1.0)
+            .unit("1"),
+        Parameter::number(
             "ghosts",
             0.3,
-            1.0,
-            "1",
             "share of mirrored echoes that come home after several bounces",
-        ),
-        number(
-            "cross_talk",
-            0.01,
-            1.0,
-            "1",
-            "share of ranges that are a neighbour's",
-        ),
-        number(
+        )
+        .between(0.0, 1.0)
+        .unit("1"),
+        Parameter::number("cross_talk", 0.01, "share of ranges that are a neighbour's")
+            .between(0.0, 1.0)
+            .unit("1"),
+        Parameter::number(
             "specular",
             30.0,
-            90.0,
-            "deg",
             "plain surfaces met at less than this are mirrors to sound",
-        ),
-        number(
-            "polished",
-            55.0,
-            90.0,
-            "deg",
-            "the same for polished surfaces and glass",
-        ),
-        number("cone", 30.0, 60.0, "deg", "full width of a sonar's cone"),
+        )
+        .between(0.0, 90.0)
+        .unit("deg"),
+        Parameter::number("polished", 55.0, "the same for polished surfaces and glass")
+            .between(0.0, 90.0)
+            .unit("deg"),
+        Parameter::number("cone", 30.0, "full width of a sonar's cone")
+            .between(0.0, 60.0)
+            .unit("deg"),
         Parameter {
             name: "dead",
             takes: Takes::Numbers {
@@ -107,52 +98,22 @@ pub(super) static DECLARATION: Declaration = Declaration {
             unit: "",
             about: "sonars that hear nothing, numbered from 0, straight ahead, counter-clockwise",
         },
-        number("drift", 0.01, 1.0, "1", "error of the wheels' size, one sigma"),
-        number(
-            "slip",
-            0.01,
-            1.0,
-            "m",
-            "error of the odometry after one metre, one sigma",
+        Parameter::number("drift", 0.01, "error of the wheels' size, one sigma")
+            .between(0.0, 1.0)
+            .unit("1"),
+        Parameter::number("slip", 0.01, "error of the odometry after one metre, one sigma")
+            .between(0.0, 1.0)
+            .unit("m"),
+        Parameter::number("compass", 0.02, "error of the compass, one sigma")
+            .between(0.0, 1.0)
+            .unit("rad"),
+        Parameter::span(
+            "picture",
+            Span::millis(400),
+            "time between two pictures of the range camera",
         ),
-        number("compass", 0.02, 1.0, "rad", "error of the compass, one sigma"),
-        Parameter {
-            name: "picture",
-            takes: Takes::Span {
-                default: Some(Span::millis(400)),
-            },
-            unit: "",
-            about: "time between two pictures of the range camera",
-        },
-        number(
-            "charge",
-            0.0,
-            1000.0,
-            "h",
-            "how long a full charge lasts; 0 for ever",
-        ),
+        Parameter::number("charge", 0.0, "how long a full charge lasts; 0 for ever")
+            .between(0.0, 1000.0)
+            .unit("h"),
     ],
 };
-
-const fn count(name: &'static str, default: f64, high: f64, about: &'static str) -> Parameter {
-    number(name, default, high, "1", about)
-}
-
-const fn number(
-    name: &'static str,
-    default: f64,
-    high: f64,
-    unit: &'static str,
-    about: &'static str,
-) -> Parameter {
-    Parameter {
-        name,
-        takes: Takes::Number {
-            low: 0.0,
-            high,
-            default: Some(default),
-        },
-        unit,
-        about,
-    }
-}

@@ -1,10 +1,7 @@
 //! `office`: Allen's body in the simulated office of the `office` crate.
 //!
-//! ```text
-//!  in:  ping (fires the ring), turn rad/s, forward m/s
-//!  out: sonar m, compass rad, odometry, fan m (the range camera's picture, on its own beat),
-//!       battery (share left; it charges where the robot started)
-//! ```
+//! The ports of the `rover` (see rover.rs), and further ones: `fan` m (the range camera's picture, on its own beat),
+//! `battery` (share left; it charges where the robot started).
 
 use std::sync::{Arc, Mutex, MutexGuard};
 
@@ -17,6 +14,7 @@ use ipc::message::{Map, Payload, Pose};
 use ipc::wiring::Setting;
 use serde_json::{Value, json};
 
+use super::rover::{self, FORWARD, PING, Progress, TURN};
 use super::{BodyKind, Place, World, WorldEnd};
 
 mod battery;
@@ -25,30 +23,17 @@ mod declaration;
 pub use battery::Battery;
 use declaration::DECLARATION;
 
-const PING: usize = 0;
-const TURN: usize = 1;
-const FORWARD: usize = 2;
-
-const SONAR: usize = 0;
-const COMPASS: usize = 1;
-const ODOMETRY: usize = 2;
 const FAN: usize = 3;
 const BATTERY: usize = 4;
 
 /// The kind `office`.
-pub static KIND: BodyKind = BodyKind {
-    declaration: &DECLARATION,
-    motion: &[TURN, FORWARD],
-    forward: Some(FORWARD),
-    stale: Span::millis(200),
-    build,
-};
+pub static KIND: BodyKind = rover::kind(&DECLARATION, build);
 
 /// An office with what its robots were told last; shared by the bodies in it.
 struct Shared {
     office: Office,
     drives: [Drive; ROBOTS_MAX],
-    last: Option<Time>,
+    progress: Progress,
 }
 
 /// One robot's body and the office around it.
@@ -146,7 +131,7 @@ impl OfficeWorld {
         let shared = Shared {
             office: Office::new(&config),
             drives: [Drive::default(); ROBOTS_MAX],
-            last: None,
+            progress: Progress::default(),
         };
         let (shared, hours) = (Arc::new(Mutex::new(shared)), given.number("charge"));
         OfficeWorld::of(shared, 0, config.sonar.range_max_m, *picture, hours)
@@ -212,22 +197,12 @@ impl core::ops::DerefMut for OfficeGuard<'_> {
     }
 }
 
-/// Longest step of the physics.
-const STEP_MAX: Span = Span::millis(20);
-/// Longest gap that is made up for; after a longer one the world goes on from where it was.
-const GAP_MAX: Span = Span::secs(1);
-
 impl Shared {
     /// Lets time pass up to `now` with `robot` under `drive`; whichever robot comes first moves them all.
     fn advance(&mut self, now: Time, robot: usize, drive: Drive) {
         self.drives[robot] = drive;
-        let gap = self.last.map_or(Span::ZERO, |last| now.since(last));
-        let mut left = gap.0.min(GAP_MAX.0);
-        self.last = Some(self.last.map_or(now, |last| last.max(now)));
-        while left > 0 {
-            let step = Span(left.min(STEP_MAX.0));
-            self.office.step_all(step.seconds(), &self.drives);
-            left -= step.0;
+        for step_s in self.progress.steps_to(now) {
+            self.office.step_all(step_s, &self.drives);
         }
     }
 }
@@ -257,7 +232,7 @@ impl World for OfficeWorld {
         }
         if link.order(PING).is_some() {
             self.sonar = office.sonar_of(self.robot);
-            link.tell(SONAR, now, &Map { ranges: self.sonar }.pack());
+            rover::tell_sonar(link, now, self.sonar);
         }
         if now >= self.picture_due {
             self.picture_due = now + self.picture;
@@ -265,13 +240,12 @@ impl World for OfficeWorld {
             link.tell(FAN, now, &Map { ranges }.pack());
         }
         let pose = office.odometry_of(self.robot);
-        link.tell(COMPASS, now, &pose.heading.pack());
-        let odometry = Pose {
+        let believed = Pose {
             x: pose.x,
             y: pose.y,
             heading: pose.heading,
         };
-        link.tell(ODOMETRY, now, &odometry.pack());
+        rover::tell_pose(link, now, believed);
     }
 
     fn view(&self) -> Value {

@@ -2,7 +2,17 @@
 //!
 //! Must never let two drive at once, nor anybody who is not its own user.
 
-use super::*;
+use std::io;
+use std::os::unix::net::UnixStream;
+use std::sync::atomic::Ordering;
+use std::time::Duration;
+
+use ipc::body::{Answer, Ask, BODY_LINE_MAX, Contract, owner_of};
+use ipc::control::{Connection, Peer, Versions};
+use ipc::wire::Page;
+use serde_json::Value;
+
+use super::{CommandReaders, HELLO_WAIT, House, command_readers};
 
 impl House {
     pub(super) fn receive(&self, stream: UnixStream) -> io::Result<()> {

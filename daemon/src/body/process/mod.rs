@@ -22,9 +22,9 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
-use ipc::body::{Answer, Ask, BODY_LINE_MAX, Contract, PULSE_KIND, Pulse, body_socket, owner_of};
+use ipc::body::{PULSE_KIND, Pulse, body_socket, owner_of};
 use ipc::clock::{self, Span, Time};
-use ipc::control::{Connection, Peer, Versions, run_dir};
+use ipc::control::run_dir;
 use ipc::wire::Page;
 use ipc::wire::iceoryx::{Domain, OwnedPage};
 use ipc::wiring::creature::{Overrun, Wake};

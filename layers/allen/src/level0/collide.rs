@@ -16,7 +16,7 @@
 use afsm::{Beat, In, Module, ModuleKind, Out, Settings};
 use ipc::clock::{Span, Time};
 use ipc::message::{Kind, Map, Pose, Pulse, SONARS};
-use ipc::wiring::{Declaration, Parameter, Port, Takes};
+use ipc::wiring::{Declaration, Parameter, Port};
 
 use crate::geometry::{HALF_CONE, Spot, bearing, wrap};
 
@@ -46,50 +46,38 @@ static DECLARATION: Declaration = Declaration {
     ],
     outputs: &[Port::new("halt", Kind::Pulse, "do not drive forward")],
     parameters: &[
-        number("radius", 0.2, "m", "radius of the robot"),
-        number("braking", 1.0, "m/s2", "how hard the robot brakes"),
-        number("pace", 0.75, "m/s", "pace at which people walk into the robot"),
-        number("start", 2.0, "m/s2", "how fast people start to walk"),
-        number("margin", 0.05, "m", "room to keep, for what the pose is off by"),
-        Parameter {
-            name: "latency",
-            takes: Takes::Span {
-                default: Some(Span::millis(60)),
-            },
-            unit: "",
-            about: "from a halt message to brakes that grip: a beat of the layer, two of the motor unit",
-        },
-        Parameter {
-            name: "lost",
-            takes: Takes::Span {
-                default: Some(Span::millis(2600)),
-            },
-            unit: "",
-            about: "how long an echo that is heard no more stands: two maps, three losses in a row are rare",
-        },
-        Parameter {
-            name: "blind",
-            takes: Takes::Span {
-                default: Some(Span::millis(1600)),
-            },
-            unit: "",
-            about: "a map older than this says nothing any more",
-        },
+        Parameter::number("radius", 0.2, "radius of the robot")
+            .between(0.0, 100.0)
+            .unit("m"),
+        Parameter::number("braking", 1.0, "how hard the robot brakes")
+            .between(0.0, 100.0)
+            .unit("m/s2"),
+        Parameter::number("pace", 0.75, "pace at which people walk into the robot")
+            .between(0.0, 100.0)
+            .unit("m/s"),
+        Parameter::number("start", 2.0, "how fast people start to walk")
+            .between(0.0, 100.0)
+            .unit("m/s2"),
+        Parameter::number("margin", 0.05, "room to keep, for what the pose is off by")
+            .between(0.0, 100.0)
+            .unit("m"),
+        Parameter::span(
+            "latency",
+            Span::millis(60),
+            "from a halt message to brakes that grip: a beat of the layer, two of the motor unit",
+        ),
+        Parameter::span(
+            "lost",
+            Span::millis(2600),
+            "how long an echo that is heard no more stands: two maps, three losses in a row are rare",
+        ),
+        Parameter::span(
+            "blind",
+            Span::millis(1600),
+            "a map older than this says nothing any more",
+        ),
     ],
 };
-
-const fn number(name: &'static str, default: f64, unit: &'static str, about: &'static str) -> Parameter {
-    Parameter {
-        name,
-        takes: Takes::Number {
-            low: 0.0,
-            high: 100.0,
-            default: Some(default),
-        },
-        unit,
-        about,
-    }
-}
 
 /// Marks farther than this are out of reach: people and robot meet at 1.05 m/s, a map serves 1.6 s at most.
 const FAR_M: f64 = 2.2;

@@ -5,7 +5,7 @@
 //! ```
 use afsm::{Beat, In, Module, ModuleKind, Out, Settings};
 use ipc::message::{Kind, Map, Vector};
-use ipc::wiring::{Declaration, Parameter, Port, Takes};
+use ipc::wiring::{Declaration, Parameter, Port};
 
 use crate::geometry::bearing;
 
@@ -29,16 +29,11 @@ static DECLARATION: Declaration = Declaration {
         .unit("m")
         .between(0.0, 100.0)],
     outputs: &[Port::new("force", Kind::Vector, "the force, in the robot's frame").unit("1/m2")],
-    parameters: &[Parameter {
-        name: "reach",
-        takes: Takes::Number {
-            low: 0.1,
-            high: 100.0,
-            default: Some(2.0),
-        },
-        unit: "m",
-        about: "returns from farther away do not repel",
-    }],
+    parameters: &[
+        Parameter::number("reach", 2.0, "returns from farther away do not repel")
+            .between(0.1, 100.0)
+            .unit("m"),
+    ],
 };
 
 struct FeelForce {

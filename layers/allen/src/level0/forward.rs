@@ -8,7 +8,7 @@
 use afsm::{Beat, In, Module, ModuleKind, Out, Settings};
 use ipc::clock::{Span, Time};
 use ipc::message::{Kind, Pulse};
-use ipc::wiring::{Declaration, Parameter, Port, Takes};
+use ipc::wiring::{Declaration, Parameter, Port};
 
 const GO: In<f64> = In::at(0);
 const HALT: In<Pulse> = In::at(1);
@@ -34,24 +34,10 @@ static DECLARATION: Declaration = Declaration {
         Port::new("done", Kind::Pulse, "the drive is over"),
     ],
     parameters: &[
-        Parameter {
-            name: "speed",
-            takes: Takes::Number {
-                low: 0.0,
-                high: 10.0,
-                default: Some(0.3),
-            },
-            unit: "m/s",
-            about: "how fast to drive",
-        },
-        Parameter {
-            name: "drive",
-            takes: Takes::Span {
-                default: Some(Span::secs(3)),
-            },
-            unit: "",
-            about: "how long one impulse drives",
-        },
+        Parameter::number("speed", 0.3, "how fast to drive")
+            .between(0.0, 10.0)
+            .unit("m/s"),
+        Parameter::span("drive", Span::secs(3), "how long one impulse drives"),
     ],
 };
 

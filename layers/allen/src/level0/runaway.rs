@@ -5,7 +5,7 @@
 //! ```
 use afsm::{Beat, In, Module, ModuleKind, Out, Settings};
 use ipc::message::{Kind, Polar, Vector};
-use ipc::wiring::{Declaration, Parameter, Port, Takes};
+use ipc::wiring::{Declaration, Parameter, Port};
 
 const FORCE: In<Vector> = In::at(0);
 const HEADING: Out<Polar> = Out::at(0);
@@ -26,16 +26,11 @@ static DECLARATION: Declaration = Declaration {
         Kind::Polar,
         "where to, in the robot's frame",
     )],
-    parameters: &[Parameter {
-        name: "threshold",
-        takes: Takes::Number {
-            low: 0.0,
-            high: 1000.0,
-            default: Some(1.2),
-        },
-        unit: "1/m2",
-        about: "weaker forces are left alone",
-    }],
+    parameters: &[
+        Parameter::number("threshold", 1.2, "weaker forces are left alone")
+            .between(0.0, 1000.0)
+            .unit("1/m2"),
+    ],
 };
 
 struct RunAway {

@@ -9,7 +9,7 @@
 use afsm::{Beat, In, Module, ModuleKind, Out, Settings};
 use ipc::clock::{Span, Time};
 use ipc::message::{Kind, Map, Pulse};
-use ipc::wiring::{Declaration, Parameter, Port, Takes};
+use ipc::wiring::{Declaration, Parameter, Port};
 
 const ECHO: In<Map> = In::at(0);
 const PING: Out<Pulse> = Out::at(0);
@@ -32,14 +32,11 @@ static DECLARATION: Declaration = Declaration {
         Port::new("ping", Kind::Pulse, "fires the ring"),
         Port::new("map", Kind::Map, "ranges in polar order, straight ahead first").unit("m"),
     ],
-    parameters: &[Parameter {
-        name: "every",
-        takes: Takes::Span {
-            default: Some(Span::secs(1)),
-        },
-        unit: "",
-        about: "time between two pings (Brooks 1991 §6.2: every second)",
-    }],
+    parameters: &[Parameter::span(
+        "every",
+        Span::secs(1),
+        "time between two pings (Brooks 1991 §6.2: every second)",
+    )],
 };
 
 #[derive(Clone, Copy)]

@@ -10,7 +10,7 @@
 use afsm::{Beat, In, Module, ModuleKind, Out, Settings};
 use ipc::clock::{Span, Time};
 use ipc::message::{Kind, Polar, Pulse};
-use ipc::wiring::{Declaration, Parameter, Port, Takes};
+use ipc::wiring::{Declaration, Parameter, Port};
 
 use crate::geometry::wrap;
 
@@ -48,16 +48,9 @@ static DECLARATION: Declaration = Declaration {
         Port::new("rate", Kind::Number, "turning rate, every beat").unit("rad/s"),
         Port::new("go", Kind::Number, "strength of the heading that was turned to"),
     ],
-    parameters: &[Parameter {
-        name: "rate",
-        takes: Takes::Number {
-            low: 0.01,
-            high: 10.0,
-            default: Some(1.2),
-        },
-        unit: "rad/s",
-        about: "fastest turn",
-    }],
+    parameters: &[Parameter::number("rate", 1.2, "fastest turn")
+        .between(0.01, 10.0)
+        .unit("rad/s")],
 };
 
 #[derive(Clone, Copy)]

@@ -8,7 +8,7 @@
 use afsm::{Beat, In, Module, ModuleKind, Out, Settings};
 use ipc::clock::Span;
 use ipc::message::{Kind, Polar, Vector};
-use ipc::wiring::{Declaration, Parameter, Port, Takes};
+use ipc::wiring::{Declaration, Parameter, Port};
 
 const GOAL: In<f64> = In::at(0);
 const FORCE: In<Vector> = In::at(1);
@@ -38,24 +38,10 @@ static DECLARATION: Declaration = Declaration {
         "where to, in the robot's frame",
     )],
     parameters: &[
-        Parameter {
-            name: "attraction",
-            takes: Takes::Number {
-                low: 0.0,
-                high: 1000.0,
-                default: Some(2.0),
-            },
-            unit: "1/m2",
-            about: "how strongly the heading draws",
-        },
-        Parameter {
-            name: "patience",
-            takes: Takes::Span {
-                default: Some(Span::secs(14)),
-            },
-            unit: "",
-            about: "how long a heading draws",
-        },
+        Parameter::number("attraction", 2.0, "how strongly the heading draws")
+            .between(0.0, 1000.0)
+            .unit("1/m2"),
+        Parameter::span("patience", Span::secs(14), "how long a heading draws"),
     ],
 };
 

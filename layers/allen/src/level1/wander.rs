@@ -7,7 +7,7 @@ use afsm::random::Random;
 use afsm::{Beat, In, Module, ModuleKind, Out, Settings};
 use ipc::clock::{Span, Time};
 use ipc::message::Kind;
-use ipc::wiring::{Declaration, Parameter, Port, Takes};
+use ipc::wiring::{Declaration, Parameter, Port};
 
 use crate::geometry::wrap;
 
@@ -27,34 +27,17 @@ static DECLARATION: Declaration = Declaration {
     inputs: &[Port::new("compass", Kind::Number, "which way the robot faces").unit("rad")],
     outputs: &[Port::new("heading", Kind::Number, "where to go, by the compass").unit("rad")],
     parameters: &[
-        Parameter {
-            name: "every",
-            takes: Takes::Span {
-                default: Some(Span::secs(10)),
-            },
-            unit: "",
-            about: "time between two headings, on average",
-        },
-        Parameter {
-            name: "jitter",
-            takes: Takes::Number {
-                low: 0.0,
-                high: 0.9,
-                default: Some(0.2),
-            },
-            unit: "1",
-            about: "by how much of it the time varies",
-        },
-        Parameter {
-            name: "spread",
-            takes: Takes::Number {
-                low: 0.0,
-                high: core::f64::consts::PI,
-                default: Some(core::f64::consts::PI),
-            },
-            unit: "rad",
-            about: "how far to either side of straight ahead a heading may lie",
-        },
+        Parameter::span("every", Span::secs(10), "time between two headings, on average"),
+        Parameter::number("jitter", 0.2, "by how much of it the time varies")
+            .between(0.0, 0.9)
+            .unit("1"),
+        Parameter::number(
+            "spread",
+            core::f64::consts::PI,
+            "how far to either side of straight ahead a heading may lie",
+        )
+        .between(0.0, core::f64::consts::PI)
+        .unit("rad"),
     ],
 };
 

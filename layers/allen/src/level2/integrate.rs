@@ -8,7 +8,7 @@
 use afsm::{Beat, In, Module, ModuleKind, Out, Settings};
 use ipc::clock::{Span, Time};
 use ipc::message::{Kind, Pose, Pulse, Vector};
-use ipc::wiring::{Declaration, Parameter, Port, Takes};
+use ipc::wiring::{Declaration, Parameter, Port};
 
 const START: In<Pulse> = In::at(0);
 const POSE: In<Pose> = In::at(1);
@@ -34,14 +34,11 @@ static DECLARATION: Declaration = Declaration {
         "the way since the start, by the compass",
     )
     .unit("m")],
-    parameters: &[Parameter {
-        name: "every",
-        takes: Takes::Span {
-            default: Some(Span::millis(250)),
-        },
-        unit: "",
-        about: "time between two reports: at full speed eight centimetres",
-    }],
+    parameters: &[Parameter::span(
+        "every",
+        Span::millis(250),
+        "time between two reports: at full speed eight centimetres",
+    )],
 };
 
 #[derive(Clone, Copy)]

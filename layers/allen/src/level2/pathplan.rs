@@ -13,7 +13,7 @@
 use afsm::{Beat, In, Module, ModuleKind, Out, Settings};
 use ipc::clock::{Span, Time};
 use ipc::message::{Kind, Polar, Pulse, Vector};
-use ipc::wiring::{Declaration, Parameter, Port, Takes};
+use ipc::wiring::{Declaration, Parameter, Port};
 
 const PATH: In<Polar> = In::at(0);
 const TRAVELLED: In<Vector> = In::at(1);
@@ -64,24 +64,14 @@ static DECLARATION: Declaration = Declaration {
         Port::new("given_up", Kind::Pulse, "there was no getting nearer"),
     ],
     parameters: &[
-        Parameter {
-            name: "near",
-            takes: Takes::Number {
-                low: 0.05,
-                high: 10.0,
-                default: Some(0.5),
-            },
-            unit: "m",
-            about: "how near a place is there",
-        },
-        Parameter {
-            name: "patience",
-            takes: Takes::Span {
-                default: Some(Span::secs(60)),
-            },
-            unit: "",
-            about: "how long it may take to get nearer at all",
-        },
+        Parameter::number("near", 0.5, "how near a place is there")
+            .between(0.05, 10.0)
+            .unit("m"),
+        Parameter::span(
+            "patience",
+            Span::secs(60),
+            "how long it may take to get nearer at all",
+        ),
     ],
 };
 

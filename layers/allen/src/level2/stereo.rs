@@ -8,7 +8,7 @@
 //! direction is as long as nothing narrows it to less than the robot's width and some more.
 use afsm::{Beat, In, Module, ModuleKind, Out, Settings};
 use ipc::message::{Kind, Map, Polar, Pulse, SONARS};
-use ipc::wiring::{Declaration, Parameter, Port, Takes};
+use ipc::wiring::{Declaration, Parameter, Port};
 
 const LOOK: In<Pulse> = In::at(0);
 const FAN: In<Map> = In::at(1);
@@ -41,31 +41,23 @@ static DECLARATION: Declaration = Declaration {
         "how far, m, and which way, in the robot's frame",
     )],
     parameters: &[
-        number("pictures", 3.0, "1", "how many pictures make a look"),
-        number(
-            "half_width",
-            0.48,
-            "m",
-            "what must be free on either side of a way",
-        ),
-        number("short", 0.8, "m", "how far before what ends a way to stop"),
-        number("least", 1.5, "m", "ways shorter than this lead nowhere"),
-        number("most", 6.0, "m", "farther than this stereo is not to be trusted"),
+        Parameter::number("pictures", 3.0, "how many pictures make a look")
+            .between(0.0, 100.0)
+            .unit("1"),
+        Parameter::number("half_width", 0.48, "what must be free on either side of a way")
+            .between(0.0, 100.0)
+            .unit("m"),
+        Parameter::number("short", 0.8, "how far before what ends a way to stop")
+            .between(0.0, 100.0)
+            .unit("m"),
+        Parameter::number("least", 1.5, "ways shorter than this lead nowhere")
+            .between(0.0, 100.0)
+            .unit("m"),
+        Parameter::number("most", 6.0, "farther than this stereo is not to be trusted")
+            .between(0.0, 100.0)
+            .unit("m"),
     ],
 };
-
-const fn number(name: &'static str, default: f64, unit: &'static str, about: &'static str) -> Parameter {
-    Parameter {
-        name,
-        takes: Takes::Number {
-            low: 0.0,
-            high: 100.0,
-            default: Some(default),
-        },
-        unit,
-        about,
-    }
-}
 
 #[derive(Clone, Copy)]
 enum State {

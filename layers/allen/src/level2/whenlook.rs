@@ -12,7 +12,7 @@
 use afsm::{Beat, In, Module, ModuleKind, Out, Settings};
 use ipc::clock::{Span, Time};
 use ipc::message::{Kind, Pulse};
-use ipc::wiring::{Declaration, Parameter, Port, Takes};
+use ipc::wiring::{Declaration, Parameter, Port};
 
 const SPEED: In<f64> = In::at(0);
 const RATE: In<f64> = In::at(1);
@@ -43,30 +43,19 @@ static DECLARATION: Declaration = Declaration {
         Port::new("hold", Kind::Pulse, "no wandering: the picture must stay true"),
     ],
     parameters: &[
-        span("rest", 700, "how long nothing may have moved"),
-        span(
+        Parameter::span("rest", Span::millis(700), "how long nothing may have moved"),
+        Parameter::span(
             "looking",
-            1300,
+            Span::millis(1300),
             "how long a look takes: three pictures, and the way to pathplan",
         ),
-        span(
+        Parameter::span(
             "again",
-            3000,
+            Span::millis(3000),
             "how long after a look that found nothing before the next one",
         ),
     ],
 };
-
-const fn span(name: &'static str, default_ms: u64, about: &'static str) -> Parameter {
-    Parameter {
-        name,
-        takes: Takes::Span {
-            default: Some(Span::millis(default_ms)),
-        },
-        unit: "",
-        about,
-    }
-}
 
 #[derive(Clone, Copy)]
 enum State {

@@ -10,7 +10,7 @@
 use afsm::{Beat, In, Module, ModuleKind, Out, Settings};
 use ipc::clock::{Span, Time};
 use ipc::message::{Kind, Map};
-use ipc::wiring::{Declaration, Parameter, Port, Takes};
+use ipc::wiring::{Declaration, Parameter, Port};
 
 use crate::geometry::wrap;
 
@@ -43,40 +43,20 @@ static DECLARATION: Declaration = Declaration {
     ],
     outputs: &[Port::new("heading", Kind::Number, "where to go, by the compass").unit("rad")],
     parameters: &[
-        metres(
+        Parameter::number(
             "widest",
             2.2,
             "walls farther apart than this, rim to wall on both sides, are no corridor",
-        ),
-        metres("ahead", 1.2, "what must be free ahead"),
-        span("most", 20, "how long to follow one at a time"),
-        span("weary", 40, "how long to leave the next one alone"),
+        )
+        .between(0.0, 20.0)
+        .unit("m"),
+        Parameter::number("ahead", 1.2, "what must be free ahead")
+            .between(0.0, 20.0)
+            .unit("m"),
+        Parameter::span("most", Span::secs(20), "how long to follow one at a time"),
+        Parameter::span("weary", Span::secs(40), "how long to leave the next one alone"),
     ],
 };
-
-const fn metres(name: &'static str, default: f64, about: &'static str) -> Parameter {
-    Parameter {
-        name,
-        takes: Takes::Number {
-            low: 0.0,
-            high: 20.0,
-            default: Some(default),
-        },
-        unit: "m",
-        about,
-    }
-}
-
-const fn span(name: &'static str, default_s: u64, about: &'static str) -> Parameter {
-    Parameter {
-        name,
-        takes: Takes::Span {
-            default: Some(Span::secs(default_s)),
-        },
-        unit: "",
-        about,
-    }
-}
 
 #[derive(Clone, Copy)]
 enum State {

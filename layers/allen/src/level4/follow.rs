@@ -11,7 +11,7 @@
 use afsm::{Beat, In, Module, ModuleKind, Out, Settings};
 use ipc::clock::{Span, Time};
 use ipc::message::{Kind, Map, Pose, SONARS};
-use ipc::wiring::{Declaration, Parameter, Port, Takes};
+use ipc::wiring::{Declaration, Parameter, Port};
 
 use crate::geometry::{Spot, bearing, wrap};
 
@@ -46,32 +46,14 @@ static DECLARATION: Declaration = Declaration {
     ],
     outputs: &[Port::new("heading", Kind::Number, "where to go, by the compass").unit("rad")],
     parameters: &[
-        Parameter {
-            name: "reach",
-            takes: Takes::Number {
-                low: 0.0,
-                high: 10.0,
-                default: Some(2.5),
-            },
-            unit: "m",
-            about: "whoever is farther is left alone",
-        },
-        span("most", 15, "how long to follow anybody"),
-        span("lose", 4, "how long without seeing a movement"),
-        span("bored", 90, "how long to leave people alone after"),
+        Parameter::number("reach", 2.5, "whoever is farther is left alone")
+            .between(0.0, 10.0)
+            .unit("m"),
+        Parameter::span("most", Span::secs(15), "how long to follow anybody"),
+        Parameter::span("lose", Span::secs(4), "how long without seeing a movement"),
+        Parameter::span("bored", Span::secs(90), "how long to leave people alone after"),
     ],
 };
-
-const fn span(name: &'static str, default_s: u64, about: &'static str) -> Parameter {
-    Parameter {
-        name,
-        takes: Takes::Span {
-            default: Some(Span::secs(default_s)),
-        },
-        unit: "",
-        about,
-    }
-}
 
 #[derive(Clone, Copy)]
 enum State {

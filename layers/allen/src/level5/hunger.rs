@@ -5,7 +5,7 @@
 //! ```
 use afsm::{Beat, In, Module, ModuleKind, Out, Settings};
 use ipc::message::Kind;
-use ipc::wiring::{Declaration, Parameter, Port, Takes};
+use ipc::wiring::{Declaration, Parameter, Port};
 
 const BATTERY: In<f64> = In::at(0);
 const HUNGRY: Out<bool> = Out::at(0);
@@ -27,27 +27,18 @@ static DECLARATION: Declaration = Declaration {
     ],
     outputs: &[Port::new("hungry", Kind::Bit, "whether it needs charging")],
     parameters: &[
-        share(
+        Parameter::number(
             "low",
             0.5,
             "less than this is low: what the way home may take is half of it",
-        ),
-        share("enough", 0.95, "more than this is full"),
+        )
+        .between(0.0, 1.0)
+        .unit("1"),
+        Parameter::number("enough", 0.95, "more than this is full")
+            .between(0.0, 1.0)
+            .unit("1"),
     ],
 };
-
-const fn share(name: &'static str, default: f64, about: &'static str) -> Parameter {
-    Parameter {
-        name,
-        takes: Takes::Number {
-            low: 0.0,
-            high: 1.0,
-            default: Some(default),
-        },
-        unit: "1",
-        about,
-    }
-}
 
 struct Hunger {
     hungry: bool,

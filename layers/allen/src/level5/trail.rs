@@ -12,7 +12,7 @@
 use afsm::{Beat, In, Module, ModuleKind, Out, Settings};
 use ipc::clock::{Span, Time};
 use ipc::message::{Kind, Pose, Pulse};
-use ipc::wiring::{Declaration, Parameter, Port, Takes};
+use ipc::wiring::{Declaration, Parameter, Port};
 
 use crate::geometry::Spot;
 
@@ -48,31 +48,15 @@ static DECLARATION: Declaration = Declaration {
         Port::new("stay", Kind::Pulse, "this is home: no going anywhere"),
     ],
     parameters: &[
-        metres("step", 0.75, "from crumb to crumb"),
-        metres("near", 0.5, "how near a crumb is there"),
-        Parameter {
-            name: "patience",
-            takes: Takes::Span {
-                default: Some(Span::secs(60)),
-            },
-            unit: "",
-            about: "after this one crumb is passed over",
-        },
+        Parameter::number("step", 0.75, "from crumb to crumb")
+            .between(0.05, 10.0)
+            .unit("m"),
+        Parameter::number("near", 0.5, "how near a crumb is there")
+            .between(0.05, 10.0)
+            .unit("m"),
+        Parameter::span("patience", Span::secs(60), "after this one crumb is passed over"),
     ],
 };
-
-const fn metres(name: &'static str, default: f64, about: &'static str) -> Parameter {
-    Parameter {
-        name,
-        takes: Takes::Number {
-            low: 0.05,
-            high: 10.0,
-            default: Some(default),
-        },
-        unit: "m",
-        about,
-    }
-}
 
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum State {

@@ -35,12 +35,7 @@ pub(crate) const fn value(kind: Kind) -> Parameter {
             default: None,
         },
     };
-    Parameter {
-        name: "value",
-        takes,
-        unit: "",
-        about: "the message; numbers missing at its end are 0",
-    }
+    Parameter::new("value", takes, "the message; numbers missing at its end are 0")
 }
 
 /// The parameter `values` for messages of `kind`.
@@ -53,17 +48,16 @@ pub(crate) const fn values(kind: Kind) -> Parameter {
         Kind::Bit => &[1.0],
         _ => &[0.0],
     };
-    Parameter {
-        name: "values",
-        takes: Takes::Numbers {
+    Parameter::new(
+        "values",
+        Takes::Numbers {
             low,
             high,
             most: MESSAGES_MAX * if matches!(kind, Kind::Map) { SONARS } else { 3 },
             default: Some(default),
         },
-        unit: "",
-        about: "the numbers of the messages, one message after the other; round again at the end",
-    }
+        "the numbers of the messages, one message after the other; round again at the end",
+    )
 }
 
 /// The message given as `value`.

@@ -18,15 +18,14 @@ use crate::schedule::Schedule;
 
 const ABOUT: &str = "emits messages at given times, and periodically after them";
 const DIAGRAM: &str = "Sending --timer at[k], then every/out := values[k]--> Sending --last--> Done";
-const AT: Parameter = Parameter {
-    name: "at",
-    takes: Takes::Spans {
+const AT: Parameter = Parameter::new(
+    "at",
+    Takes::Spans {
         most: MESSAGES_MAX,
         default: Some(&[]),
     },
-    unit: "",
-    about: "when to send, counted from the first beat",
-};
+    "when to send, counted from the first beat",
+);
 const EVERY: Parameter = span_or_none(
     "every",
     "period from the last of these times on, or from the first beat",

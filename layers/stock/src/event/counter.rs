@@ -10,8 +10,6 @@ use afsm::{Beat, In, Module, ModuleKind, Out, Settings};
 use ipc::message::{Kind, Pulse};
 use ipc::wiring::{Declaration, Parameter, Port};
 
-use crate::declare::ranged;
-
 /// Largest count: past it not every whole number is a number of 64 bits.
 pub const COUNT_MAX: f64 = 9_007_199_254_740_992.0;
 
@@ -45,7 +43,7 @@ pub const KINDS: &[&ModuleKind] = &[&ModuleKind {
 }];
 
 const fn bound(name: &'static str, default: f64, about: &'static str) -> Parameter {
-    ranged(name, [-COUNT_MAX, COUNT_MAX], Some(default), "", about)
+    Parameter::number(name, default, about).between(-COUNT_MAX, COUNT_MAX)
 }
 
 struct Counter {

@@ -11,9 +11,9 @@
 use afsm::{Beat, In, Module, ModuleKind, Out};
 use ipc::clock::{Span, Time};
 use ipc::message::{Kind, Pulse};
-use ipc::wiring::Declaration;
+use ipc::wiring::{Declaration, Parameter};
 
-use crate::declare::{bit, input, out, span};
+use crate::declare::{input, out, span};
 
 const IN: In<Pulse> = In::at(0);
 const OUT: Out<bool> = Out::at(0);
@@ -29,7 +29,7 @@ pub const KINDS: &[&ModuleKind] = &[&ModuleKind {
         outputs: &[out(Kind::Bit, "true when it turns on, false when it turns off")],
         parameters: &[
             span("length", "how long it stays on after the pulse was written"),
-            bit(
+            Parameter::bit(
                 "again",
                 true,
                 "whether a pulse while it is on begins the time again",

@@ -7,9 +7,9 @@
 
 use afsm::{Beat, In, Module, ModuleKind, Out};
 use ipc::message::{Kind, Pulse};
-use ipc::wiring::{Declaration, Port};
+use ipc::wiring::{Declaration, Parameter, Port};
 
-use crate::declare::{bit, input};
+use crate::declare::input;
 
 const IN: In<bool> = In::at(0);
 const RISING: Out<Pulse> = Out::at(0);
@@ -26,7 +26,11 @@ pub const KINDS: &[&ModuleKind] = &[&ModuleKind {
             Port::new("rising", Kind::Pulse, "it turned true"),
             Port::new("falling", Kind::Pulse, "it turned false"),
         ],
-        parameters: &[bit("start", false, "what it counts as before the first message")],
+        parameters: &[Parameter::bit(
+            "start",
+            false,
+            "what it counts as before the first message",
+        )],
     },
     build: |s| {
         let start = s.bit("start");

@@ -7,9 +7,9 @@
 
 use afsm::{Beat, In, Module, ModuleKind, Out};
 use ipc::message::{Kind, Pulse};
-use ipc::wiring::Declaration;
+use ipc::wiring::{Declaration, Parameter};
 
-use crate::declare::{bit, input, out};
+use crate::declare::{input, out};
 
 const IN: In<Pulse> = In::at(0);
 const OUT: Out<bool> = Out::at(0);
@@ -22,7 +22,11 @@ pub const KINDS: &[&ModuleKind] = &[&ModuleKind {
         diagram: "Off --in/out := 1--> On --in/out := 0--> Off",
         inputs: &[input(Kind::Pulse, "turn over")],
         outputs: &[out(Kind::Bit, "what it turned to")],
-        parameters: &[bit("start", false, "what it is before the first pulse")],
+        parameters: &[Parameter::bit(
+            "start",
+            false,
+            "what it is before the first pulse",
+        )],
     },
     build: |s| {
         let start = s.bit("start");

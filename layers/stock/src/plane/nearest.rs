@@ -9,10 +9,10 @@
 
 use afsm::{Beat, In, Module, ModuleKind, Out, Settings};
 use ipc::message::{Kind, Map, Polar, SONARS};
-use ipc::wiring::Declaration;
+use ipc::wiring::{Declaration, Parameter};
 use std::f64::consts::{PI, TAU};
 
-use crate::declare::{input, out, ranged};
+use crate::declare::{input, out};
 
 const IN: In<Map> = In::at(0);
 const OUT: Out<Polar> = Out::at(0);
@@ -32,8 +32,12 @@ pub const KINDS: &[&ModuleKind] = &[&ModuleKind {
             "range (m) and bearing (rad) of the nearest echo",
         )],
         parameters: &[
-            ranged("ahead", [-PI, PI], Some(0.0), "rad", "middle of the sector"),
-            ranged("cone", [0.0, PI], Some(PI), "rad", "half the width of the sector"),
+            Parameter::number("ahead", 0.0, "middle of the sector")
+                .between(-PI, PI)
+                .unit("rad"),
+            Parameter::number("cone", PI, "half the width of the sector")
+                .between(0.0, PI)
+                .unit("rad"),
         ],
     },
     build: |s| Box::new(Nearest::new(s)),

@@ -25,15 +25,14 @@ pub const KINDS: &[&ModuleKind] = &[&ModuleKind {
         inputs: PairPorts::<f64, bool>::INPUTS,
         outputs: PairPorts::<f64, bool>::OUTPUTS,
         parameters: &[
-            Parameter {
-                name: "is",
-                takes: Takes::Word {
+            Parameter::new(
+                "is",
+                Takes::Word {
                     words: WORDS,
                     default: None,
                 },
-                unit: "",
-                about: "what to ask of a, compared with b",
-            },
+                "what to ask of a, compared with b",
+            ),
             positive(
                 "tolerance",
                 0.0,

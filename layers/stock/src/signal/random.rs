@@ -10,28 +10,17 @@ use afsm::random::Random;
 use afsm::{Beat, Module, ModuleKind, Out, Settings};
 use ipc::clock::{Span, Time};
 use ipc::message::Kind;
-use ipc::wiring::{Declaration, Parameter, Takes};
+use ipc::wiring::{Declaration, Parameter};
 use std::f64::consts::PI;
 
-use crate::declare::{number, out, ranged};
+use crate::declare::{number, out};
 
 const OUT: Out<f64> = Out::at(0);
 const DIAGRAM: &str = "Drawing --timer/out := random from low up to, not including, high; timer := every, +- jitter of it--> Drawing";
-const EVERY: Parameter = Parameter {
-    name: "every",
-    takes: Takes::Span {
-        default: Some(Span::secs(10)),
-    },
-    unit: "",
-    about: "time between two numbers, on average",
-};
-const JITTER: Parameter = ranged(
-    "jitter",
-    [0.0, 0.9],
-    Some(0.0),
-    "1",
-    "by how much of it the time varies",
-);
+const EVERY: Parameter = Parameter::span("every", Span::secs(10), "time between two numbers, on average");
+const JITTER: Parameter = Parameter::number("jitter", 0.0, "by how much of it the time varies")
+    .between(0.0, 0.9)
+    .unit("1");
 
 /// The kinds of this file.
 pub const KINDS: &[&ModuleKind] = &[
@@ -61,14 +50,12 @@ pub const KINDS: &[&ModuleKind] = &[
             parameters: &[
                 EVERY,
                 JITTER,
-                ranged("low", [-PI, PI], Some(-PI), "rad", "rightmost heading"),
-                ranged(
-                    "high",
-                    [-PI, PI],
-                    Some(PI),
-                    "rad",
-                    "leftmost heading, not reached",
-                ),
+                Parameter::number("low", -PI, "rightmost heading")
+                    .between(-PI, PI)
+                    .unit("rad"),
+                Parameter::number("high", PI, "leftmost heading, not reached")
+                    .between(-PI, PI)
+                    .unit("rad"),
             ],
         },
         build: |s| Box::new(Drawing::new(s)),

@@ -24,13 +24,7 @@ impl Truck {
     /// allocates is allocated here.
     pub fn new(chromosome: Chromosome, grid: Grid, chance: &mut Chance) -> Self {
         let layers = strategies::build(&chromosome, grid, chance);
-        let backplane = CommunicationBackplane::new(layers.len());
-        Self {
-            chromosome,
-            layers,
-            backplane,
-            last_turn: None,
-        }
+        Self::of_layers(chromosome, layers)
     }
 
     /// A truck of layers that are in no registry, for trying them out; `chromosome` is only its name.

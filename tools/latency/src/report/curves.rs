@@ -2,6 +2,8 @@
 
 use std::fmt::Write as _;
 
+use graph::xml::escaped;
+
 use crate::track::Track;
 
 const WIDTH: f64 = 860.0;
@@ -73,7 +75,7 @@ pub fn draw(tracks: &[Track]) -> String {
              <text x=\"{text_x}\" y=\"{at}\">{}</text>",
             WIDTH - RIGHT + 10.0,
             at - 4.0,
-            escape(&track.name())
+            escaped(&track.name())
         );
     }
     svg.push_str("</svg>\n");
@@ -118,12 +120,6 @@ fn axes(svg: &mut String, (low, high): (f64, f64), x: impl Fn(f64) -> f64, y: im
         "<text x=\"{LEFT}\" y=\"{:.0}\">percentile: so many were not longer</text>",
         HEIGHT - 12.0
     );
-}
-
-fn escape(text: &str) -> String {
-    text.replace('&', "&amp;")
-        .replace('<', "&lt;")
-        .replace('>', "&gt;")
 }
 
 #[cfg(test)]

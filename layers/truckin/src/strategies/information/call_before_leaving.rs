@@ -2,9 +2,10 @@
 
 use backplane::{BehaviourLayer, Feedback};
 
+use super::CallList;
 use crate::ootland::chance::Chance;
 use crate::ootland::rules::TRUCK_CAPITAL_CENTS;
-use crate::ootland::{Controller, Corner, Grid, TruckAction, TruckCreature};
+use crate::ootland::{Controller, Grid, TruckAction, TruckCreature};
 use crate::strategies::MicroStrategy;
 use crate::strategies::notebook::Notebook;
 use crate::strategies::roads::{TruckProposal, add};
@@ -15,17 +16,15 @@ const BUDGET_CENTS: i64 = TRUCK_CAPITAL_CENTS / 5;
 /// Calls first, drives later.
 pub struct CallBeforeLeaving {
     notebook: Notebook,
-    to_call: Vec<Corner>,
+    to_call: CallList,
     done: bool,
 }
 
 impl MicroStrategy for CallBeforeLeaving {
     fn new(grid: Grid, mut chance: Chance) -> Self {
-        let mut to_call: Vec<Corner> = (0..grid.corners() as u16).map(Corner).collect();
-        chance.shuffle(&mut to_call);
         Self {
             notebook: Notebook::new(grid),
-            to_call,
+            to_call: CallList::new(grid, &mut chance),
             done: false,
         }
     }
@@ -44,12 +43,10 @@ impl BehaviourLayer<TruckCreature> for CallBeforeLeaving {
         if self.done {
             return;
         }
-        while let Some(corner) = self.to_call.pop() {
-            if corner != body.corner() && self.notebook.about(corner).is_none() {
-                proposal.inhibit_all_below();
-                add(proposal, TruckAction::Phone(corner));
-                return;
-            }
+        if let Some(corner) = self.to_call.next_unknown(&self.notebook, body.corner()) {
+            proposal.inhibit_all_below();
+            add(proposal, TruckAction::Phone(corner));
+            return;
         }
         self.done = true;
     }

@@ -2,7 +2,7 @@
 
 use backplane::{BehaviourLayer, Feedback};
 
-use super::inhibit_trading;
+use super::{CallList, inhibit_trading};
 use crate::ootland::chance::Chance;
 use crate::ootland::{Controller, Corner, Grid, Kind, TruckAction, TruckCreature};
 use crate::strategies::MicroStrategy;
@@ -19,17 +19,15 @@ const THRIFT_CENTS: i64 = 30_000;
 /// Keeps its notes up to date.
 pub struct KeepPricesFresh {
     notebook: Notebook,
-    to_call: Vec<Corner>,
+    to_call: CallList,
     next_call_minute: i32,
 }
 
 impl MicroStrategy for KeepPricesFresh {
     fn new(grid: Grid, mut chance: Chance) -> Self {
-        let mut to_call: Vec<Corner> = (0..grid.corners() as u16).map(Corner).collect();
-        chance.shuffle(&mut to_call);
         Self {
             notebook: Notebook::new(grid),
-            to_call,
+            to_call: CallList::new(grid, &mut chance),
             next_call_minute: 0,
         }
     }
@@ -45,16 +43,11 @@ impl KeepPricesFresh {
             .map(|(_, corner)| corner)
     }
 
-    fn missing_kind_call(&mut self) -> Option<Corner> {
+    fn missing_kind_call(&mut self, here: Corner) -> Option<Corner> {
         if self.notebook.knows_every_kind() {
             return None;
         }
-        while let Some(corner) = self.to_call.pop() {
-            if self.notebook.about(corner).is_none() {
-                return Some(corner);
-            }
-        }
-        None
+        self.to_call.next_unknown(&self.notebook, here)
     }
 }
 
@@ -68,7 +61,7 @@ impl BehaviourLayer<TruckCreature> for KeepPricesFresh {
         if body.capital_cents() < THRIFT_CENTS {
             return;
         }
-        let call = self.missing_kind_call().or_else(|| {
+        let call = self.missing_kind_call(body.corner()).or_else(|| {
             let due = now >= self.next_call_minute;
             self.next_call_minute = if due {
                 now + BETWEEN_CALLS_MINUTES

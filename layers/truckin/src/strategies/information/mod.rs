@@ -13,9 +13,33 @@ micro_strategies! {
 
 use backplane::LayerId;
 
+use super::notebook::Notebook;
 use super::roads::TruckProposal;
+use crate::ootland::chance::Chance;
+use crate::ootland::{Corner, Grid};
 
 /// Inhibits trading and leaves gas getting and capital maintenance alone.
 fn inhibit_trading(proposal: &mut TruckProposal<'_>) {
     proposal.inhibit(LayerId(2));
+}
+
+/// Every corner of the country in an order of chance, to be called once each.
+struct CallList(Vec<Corner>);
+
+impl CallList {
+    fn new(grid: Grid, chance: &mut Chance) -> CallList {
+        let mut corners: Vec<Corner> = (0..grid.corners() as u16).map(Corner).collect();
+        chance.shuffle(&mut corners);
+        CallList(corners)
+    }
+
+    /// The next corner that is not `here` and of which nothing is known.
+    fn next_unknown(&mut self, notebook: &Notebook, here: Corner) -> Option<Corner> {
+        loop {
+            let corner = self.0.pop()?;
+            if corner != here && notebook.about(corner).is_none() {
+                return Some(corner);
+            }
+        }
+    }
 }

@@ -2,51 +2,27 @@
 
 use std::cmp::Reverse;
 
-use backplane::{BehaviourLayer, Feedback};
-
-use super::{SHORT_MINUTES, go_or_look, partner_kind};
-use crate::ootland::chance::Chance;
-use crate::ootland::{Controller, Corner, Grid, TruckCreature};
-use crate::strategies::MicroStrategy;
+use super::{Choice, GoTo, partners_elsewhere};
+use crate::ootland::{Controller, Corner};
 use crate::strategies::notebook::Notebook;
-use crate::strategies::roads::TruckProposal;
 
 /// Goes by price alone.
-pub struct BestPrice {
-    notebook: Notebook,
-    chance: Chance,
-}
+pub type BestPrice = GoTo<ByPrice>;
 
-impl MicroStrategy for BestPrice {
-    fn new(grid: Grid, chance: Chance) -> Self {
-        Self {
-            notebook: Notebook::new(grid),
-            chance,
-        }
-    }
-}
+/// The best price, the nearer of equals.
+pub struct ByPrice;
 
-impl BestPrice {
-    fn target(&self, body: &Controller<'_>) -> Option<Corner> {
-        let here = body.corner();
-        let partners = self.notebook.ready(partner_kind(body), SHORT_MINUTES);
-        partners
-            .filter(|(corner, _)| *corner != here)
+impl Choice for ByPrice {
+    fn target(notebook: &Notebook, body: &Controller<'_>) -> Option<Corner> {
+        partners_elsewhere(notebook, body)
             .map(|(corner, note)| (note.card.buying_cents - note.card.selling_cents, corner))
-            .max_by_key(|(gain, corner)| (*gain, Reverse(body.grid().steps(here, *corner)), *corner))
+            .max_by_key(|(gain, corner)| {
+                (
+                    *gain,
+                    Reverse(body.grid().steps(body.corner(), *corner)),
+                    *corner,
+                )
+            })
             .map(|(_, corner)| corner)
-    }
-}
-
-impl BehaviourLayer<TruckCreature> for BestPrice {
-    fn feedback(&mut self, heard: &Feedback<'_, TruckCreature>, body: &Controller<'_>) {
-        self.notebook.learn(heard, body);
-    }
-
-    fn go(&mut self, proposal: &mut TruckProposal<'_>, body: &Controller<'_>) {
-        if body.range_steps() > 0 {
-            let target = self.target(body);
-            go_or_look(proposal, body, target, &self.notebook, &mut self.chance);
-        }
     }
 }

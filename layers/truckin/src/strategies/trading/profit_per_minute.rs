@@ -2,7 +2,7 @@
 
 use backplane::{BehaviourLayer, Feedback};
 
-use super::{SHORT_MINUTES, go_or_look};
+use super::{SHORT_MINUTES, best_buyer_elsewhere, go_or_look};
 use crate::ootland::chance::Chance;
 use crate::ootland::rules::{LOAD_UNITS_MAX, STEP_MINUTES};
 use crate::ootland::{Controller, Corner, Grid, Kind, TruckCreature};
@@ -40,23 +40,7 @@ impl ProfitPerMinute {
 
     /// The buyer whose price for the load, over the way there, is best.
     fn best_buyer(&self, body: &Controller<'_>) -> Option<Corner> {
-        let loads = [(Kind::Consumer, body.items()), (Kind::Retailer, body.crates())];
-        let offers = loads
-            .into_iter()
-            .filter(|(_, units)| *units > 0)
-            .flat_map(|(kind, units)| {
-                self.notebook
-                    .ready(kind, SHORT_MINUTES)
-                    .map(move |(corner, note)| {
-                        let steps = body.grid().steps(body.corner(), corner);
-                        let cents = i64::from(units) * i64::from(note.card.buying_cents);
-                        (Self::per_minute(cents, steps), corner)
-                    })
-            });
-        offers
-            .filter(|(_, corner)| *corner != body.corner())
-            .max()
-            .map(|(_, corner)| corner)
+        best_buyer_elsewhere(&self.notebook, body, Self::per_minute)
     }
 
     /// The seller from which a full load, sold at the best buyer of it, brings most per minute.

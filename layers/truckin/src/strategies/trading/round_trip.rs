@@ -2,7 +2,7 @@
 
 use backplane::{BehaviourLayer, Feedback};
 
-use super::{SHORT_MINUTES, go_or_look};
+use super::{SHORT_MINUTES, best_buyer_elsewhere, go_or_look};
 use crate::ootland::chance::Chance;
 use crate::ootland::rules::STEP_MINUTES;
 use crate::ootland::{Controller, Corner, Grid, Kind, TruckCreature};
@@ -56,26 +56,9 @@ impl MicroStrategy for RoundTrip {
 impl RoundTrip {
     /// The buyer that brings most for what is on board, after the way.
     fn buyer_of_load(&self, body: &Controller<'_>) -> Option<Corner> {
-        let loads = [(Kind::Consumer, body.items()), (Kind::Retailer, body.crates())];
-        let offers = loads
-            .into_iter()
-            .filter(|(_, units)| *units > 0)
-            .flat_map(|(kind, units)| {
-                self.notebook
-                    .ready(kind, SHORT_MINUTES)
-                    .map(move |(corner, note)| {
-                        let steps = i64::from(body.grid().steps(body.corner(), corner));
-                        let cents = i64::from(units) * i64::from(note.card.buying_cents);
-                        (
-                            cents * 100 / (steps * i64::from(STEP_MINUTES) + STOPS_MINUTES),
-                            corner,
-                        )
-                    })
-            });
-        offers
-            .filter(|(_, corner)| *corner != body.corner())
-            .max()
-            .map(|(_, corner)| corner)
+        best_buyer_elsewhere(&self.notebook, body, |cents, steps| {
+            cents * 100 / (i64::from(steps * STEP_MINUTES) + STOPS_MINUTES)
+        })
     }
 
     /// The trip with the best gain over its time that still fits in the game.
