@@ -142,13 +142,12 @@ impl Plugs {
     /// Every reason why not.
     pub fn attach(&self, plug: Plug, domain: &Domain) -> Result<Joined, Vec<String>> {
         let result = self.try_attach(&plug, domain);
-        let (layer, pid) = (plug.layer.clone(), plug.pid);
+        let (layer, pid, taps) = (plug.layer.clone(), plug.pid, tapped(&plug));
         match &result {
-            Ok(_) => self.events.note(
-                "layer",
-                Some(&layer),
-                format!("layer {layer} (pid {pid}) attached"),
-            ),
+            Ok(_) => {
+                let text = format!("layer {layer} (pid {pid}) attached");
+                self.events.note_wires("layer", Some(&layer), &taps, text);
+            }
             Err(reasons) => {
                 let text = format!("layer {layer} (pid {pid}) refused: {}", reasons.join("; "));
                 self.events.note("layer", Some(&layer), text);
@@ -248,25 +247,25 @@ impl Plugs {
                     let layer = &attached.plug.layer;
                     if let Some(text) = flow.garbage(&tap.gauge, now) {
                         let text = format!("policy breach: layer {layer}: {text} on {}", tap.tap.from);
-                        breaches.push((None, layer.clone(), text));
+                        breaches.push((None, layer.clone(), tap.tap.from.clone(), text));
                     }
                     if let Some(text) = flow.flood(tap.reader.number(), most, now) {
                         let text = format!("policy breach: layer {layer} floods {}: {text}", tap.tap.from);
                         attached.dismissed.store(true, Ordering::Relaxed);
-                        breaches.push((Some(attached.number), layer.clone(), text));
+                        breaches.push((Some(attached.number), layer.clone(), tap.tap.from.clone(), text));
                         break;
                     }
                 }
             }
             let flooding = breaches.iter().filter(|(number, ..)| number.is_some());
-            for (_, layer, _) in flooding {
+            for (_, layer, ..) in flooding {
                 if state.barred.len() < BARRED_MAX {
                     state.barred.push((layer.clone(), now + BARRED));
                 }
             }
         }
-        for (number, layer, text) in breaches {
-            self.events.note("policy", Some(&layer), text);
+        for (number, layer, wire, text) in breaches {
+            self.events.note_wires("policy", Some(&layer), &[wire], text);
             if let Some(number) = number {
                 self.detach(number, "was let go");
             }
@@ -295,6 +294,15 @@ impl Plugs {
             .max()
             .unwrap_or(Span::ZERO);
         let text = format!("layer {layer} (pid {pid}) {why}; its taps run out within {longest}");
-        self.events.note("layer", Some(layer), text);
+        let taps = tapped(&attached.plug);
+        self.events.note_wires("layer", Some(layer), &taps, text);
     }
+}
+
+/// The ports that a layer taps, each once, by name.
+fn tapped(plug: &Plug) -> Vec<String> {
+    let mut ports: Vec<String> = plug.taps.iter().map(|tap| tap.to.clone()).collect();
+    ports.sort();
+    ports.dedup();
+    ports
 }
