@@ -43,6 +43,11 @@ fi
 command -v cyclictest >/dev/null || fail "cyclictest is not installed (Debian: apt-get install rt-tests)"
 lab --seconds 12 --against cyclictest --rounds 4 --round-seconds 2 --gate --out "$out/idle" || fail "the gate, idle"
 lab --seconds 12 --load churn --gate --out "$out/churn" || fail "the gate, with churn"
+if [ "$(nproc)" -gt 1 ]; then
+  lab --seconds 0 --against blackboard --rounds 4 --round-seconds 2 --gate --out "$out/across" || fail "the gate, across processes"
+else
+  echo "skipped: messages to another process (one processor)"
+fi
 
 # System calls: what each beating thread did between its first and its last sleep.
 if command -v strace >/dev/null && strace -o /dev/null true 2>/dev/null; then

@@ -32,7 +32,9 @@ echo 'OPTIONS=--body spike' >"$files/etc/subsumed/spike.env"
 printf 'creature = "x"\n[[layer]]\nname = \n' >"$files/etc/subsumed/bad.toml"
 ln -s /usr/bin/allen-wander "$files/etc/subsumed/layers/tom-wander"
 mkdir -p "$files/etc/systemd/system/subsumed-layer@tom-wander.service.d"
-sed -n '/^```ini$/,/^```$/p' deploy/README.md | grep -v '^```' >"$files/etc/systemd/system/subsumed-layer@tom-wander.service.d/creature.conf"
+# The n-th drop-in of the manual.
+drop_in() { awk -v n="$1" '/^```ini$/ {on = ++count == n; next} /^```$/ {on = 0} on' deploy/README.md; }
+drop_in 1 >"$files/etc/systemd/system/subsumed-layer@tom-wander.service.d/creature.conf"
 # Outside of the overlay a mkdtemp folder is for its owner alone.
 chmod -R u=rwX,go=rX "$files"
 
@@ -78,20 +80,29 @@ box systemctl daemon-reload
 units="subsumed@tom.service subsumed-body@tom.service subsumed-layer@tom-wander.service"
 said=$(box systemd-analyze verify $units 2>&1 >/dev/null) || true
 [ -z "$said" ] || fail "systemd-analyze verify: $said"
+exposures=""
 for unit in subsumed@:10 subsumed-layer@:10 subsumed-body@:11; do
   box systemd-analyze security --offline=true --threshold="${unit#*:}" "/usr/lib/systemd/system/${unit%:*}.service" >"$stage/security" \
     || fail "exposure: $(grep Overall "$stage/security")"
+  exposures+=" ${unit%:*} $(sed -n 's/.*Overall.*service: \([0-9.]*\) .*/\1/p' "$stage/security")"
 done
-if box sh -c 'udevadm verify --help' >/dev/null 2>&1; then
-  box udevadm verify /usr/lib/udev/rules.d/60-subsumed-serial.rules >/dev/null || fail "the udev rule is not sound"
+# A trial run over any device reads every rule and complains of what it does not understand.
+device=$(box sh -c 'ls -d /sys/class/tty/* 2>/dev/null | head -1')
+if command -v udevadm >/dev/null && [ -n "$device" ]; then
+  box udevadm test --action=add "$device" >"$stage/udev" 2>&1 || true
+  grep -q 'DEVPATH=' "$stage/udev" || fail "udevadm does not read rules: $(tail -3 "$stage/udev")"
+  grep '^/usr/lib/udev/rules.d/60-subsumed' "$stage/udev" && fail "the udev rule is not sound"
 else
-  echo "  skipped: the udev rule (this systemd has no \`udevadm verify\`)"
+  echo "  skipped: the udev rule (no udevadm, or no device to try it on)"
 fi
-ok "verified; exposure of daemon and layer at most 1.0, of the body 1.1"
+ok "verified; exposure at most 1.0, of the body 1.1:$exposures"
 
 # Start: `systemctl start` returns when it is ready, and not before.
 box systemctl start subsumed@tom || fail "subsumed@tom does not start"
 active subsumed@tom || fail "not active after its start"
+status_says subsumed@tom '^level 0 (avoid); ' || fail "ready without a status"
+beats=$(ctl tom --json status | grep -o '"beats":[0-9]*' | head -1 | cut -d: -f2)
+[ "${beats:-0}" -gt 0 ] || fail "ready before the first beat"
 until_true "the status of tom" status_says subsumed@tom 'level 0 (avoid); may move'
 if chrt -f 1 true 2>/dev/null; then
   status_says subsumed@tom 'real time' || fail "real time was refused: $(log -u subsumed@tom)"
@@ -101,6 +112,13 @@ else
 fi
 [ "$(box stat -c %U "/proc/$(show subsumed@tom MainPID)")" = subsumed ] || fail "it does not run as its user"
 until_true "tom moves" goes_on tom
+# A login session finds it without being told where, and is told why it may not.
+box env XDG_RUNTIME_DIR=/run/user/0 subsumectl --creature tom status >/dev/null || fail "root must find the host's daemon"
+said=$(box setpriv --reuid=60001 --regid=60001 --clear-groups env XDG_RUNTIME_DIR=/run/user/60001 subsumectl --creature tom status 2>&1) \
+  && fail "another user must not ask for the status"
+grep -q 'not open to this user' <<<"$said" || fail "another user must hear why: $said"
+box setpriv --reuid=subsumed --regid=subsumed --init-groups subsumectl --creature tom watch body.odometry --count 3 --seconds 20 >"$stage/watch" \
+  && [ "$(wc -l <"$stage/watch")" = 3 ] || fail "its own user must read wires: $(cat "$stage/watch")"
 ok "started, ready, with its status: $(show subsumed@tom StatusText)"
 
 # Two at once, on wires and sockets of their own.
@@ -113,6 +131,7 @@ status_says subsumed@tom 'may move' || fail "a halt of one creature halted the o
 until_true "the journal knows the cause" says 'the body is halted' -u subsumed@jerry SUBSUMED_KIND=halt 'SUBSUMED_CAUSE=emergency stop'
 ctl jerry reset >/dev/null
 until_true "jerry goes on" status_says subsumed@jerry 'may move'
+until_true "the flight recorder's file" box sh -c 'ls /var/lib/subsumed/jerry-*-emergency-stop.mcap'
 ok "two at once; halt state in the status, its cause in a field of the journal"
 
 # Reload: nothing changes while it runs, and the journal says so.
@@ -144,7 +163,11 @@ goes_on tom || fail "the creature must move on without the layer"
 until_true "the layer's restart" restarted subsumed-layer@tom-wander "$layer"
 until_true "the layer attaches again" attached tom wander
 [ "$(show subsumed@tom MainPID)" = "$pid" ] || fail "the death of a layer must not touch the daemon"
-ok "a layer was killed and came back; the creature moved on"
+entry=$(box journalctl -q --no-pager -o json SUBSUMED_CREATURE=tom SUBSUMED_LAYER=wander SUBSUMED_WIRE=turn.heading | tail -1)
+for field in '"SUBSUMED_KIND":"layer"' '"SUBSUMED_TIME":"' '"_SYSTEMD_UNIT":"subsumed@tom.service"' '"PRIORITY":"6"'; do
+  grep -qF -- "$field" <<<"$entry" || fail "the journal must have $field about the layer: $entry"
+done
+ok "a layer was killed and came back; the creature moved on; layer and wire are fields of the journal"
 
 # SIGKILL: started again, and the layer finds it again.
 hit -KILL subsumed@tom
@@ -177,13 +200,15 @@ box systemctl stop subsumed-body@spike
 ok "a body process halts by itself and outlives its daemon"
 
 # Stop: the body is halted before the process ends; the layer goes with its daemon.
+invocation=$(show subsumed@tom InvocationID)
 box systemctl stop subsumed@tom
 [ "$(show subsumed@tom Result)" = success ] || fail "a stop must end with success, not $(show subsumed@tom Result)"
 until_true "the layer stops with its daemon" sh -c "! SDBOX=$SDBOX tests/sdbox run systemctl -q is-active subsumed-layer@tom-wander"
-box journalctl --sync
-halted=$(log -u subsumed@tom -n 20 | grep -n 'the body is halted: .*shutdown' | tail -1 | cut -d: -f1)
-stopped=$(log -u subsumed@tom -n 20 | grep -n -E '^Stopped|Deactivated successfully' | head -1 | cut -d: -f1)
-[ -n "$halted" ] && [ -n "$stopped" ] && [ "$halted" -lt "$stopped" ] || fail "the body must be halted before the daemon leaves"
+# Both speak to the journal through one socket, so their order there is the order in which it happened.
+line_of() { log "_SYSTEMD_INVOCATION_ID=$invocation" + "INVOCATION_ID=$invocation" | grep -n "$1" | tail -1 | cut -d: -f1; }
+until_true "the end in the journal" says 'Deactivated successfully' "INVOCATION_ID=$invocation"
+halted=$(line_of 'the body is halted: .*shutdown') ended=$(line_of 'Deactivated successfully')
+[ -n "$halted" ] && [ "$halted" -lt "$ended" ] || fail "the body must be halted before the daemon leaves"
 ok "stopped: body halted first, its layer gone with it"
 
 # Bad input: said with its place, and not tried again and again.
@@ -192,20 +217,45 @@ box systemctl start subsumed@bad 2>/dev/null && fail "a broken creature file mus
 until_true "the errors of a broken file" says 'bad.toml:3:' -u subsumed@bad
 ok "a broken file: its errors in the journal, no restarts"
 
+# The page and its hole in the wall, as the manual says.
+if command -v curl >/dev/null; then
+  may_look() { box curl -fsS --max-time 5 http://127.0.0.1:4686/api/state; }
+  may_look >/dev/null 2>&1 && fail "the page must be off"
+  echo 'PAGE=--page-port 4686' | box sh -c 'cat >/etc/subsumed/jerry.env'
+  box systemctl restart subsumed@jerry || fail "jerry does not start with a page"
+  may_look >/dev/null 2>&1 && fail "without its drop-in the page must not be reached"
+  box mkdir -p /etc/systemd/system/subsumed@jerry.service.d
+  drop_in 2 | box sh -c 'cat >/etc/systemd/system/subsumed@jerry.service.d/page.conf'
+  box systemctl daemon-reload
+  box systemctl restart subsumed@jerry || fail "jerry does not start with its drop-in for the page"
+  may_look | grep -q '"jerry"' || fail "with its drop-in the page must be reached"
+  ok "the page is off, and on where the manual says how; exposure then $(box systemd-analyze security subsumed@jerry | sed -n 's/.*Overall.*service: \([0-9.]*\) .*/\1/p')"
+else
+  echo "  skipped: the page (no curl)"
+fi
+
 # Real time refused: explained, and the creature runs in best effort.
 refuse() {
+  local option=$1 found=$2
   box mkdir -p /run/systemd/system/subsumed@jerry.service.d
-  printf '[Service]\n%s\n' "$1" | box sh -c 'cat >/run/systemd/system/subsumed@jerry.service.d/refuse.conf'
+  printf '[Service]\n%s\n' "$option" | box sh -c 'cat >/run/systemd/system/subsumed@jerry.service.d/refuse.conf'
   box systemctl daemon-reload
-  box systemctl restart subsumed@jerry || fail "with $1 it must start in best effort"
-  status_says subsumed@jerry 'best effort' || fail "with $1 its status must say best effort"
-  local words; for words in 'sched_setscheduler(SCHED_FIFO' CAP_SYS_NICE RT_GROUP_SCHED RestrictRealtime= 'user namespaces'; do
-    says "$words" -u subsumed@jerry "_PID=$(show subsumed@jerry MainPID)" || fail "with $1 the journal must name $words"
+  box systemctl restart subsumed@jerry || fail "with $option it must start in best effort"
+  status_says subsumed@jerry 'best effort' || fail "with $option its status must say best effort"
+  local words; for words in 'sched_setscheduler(SCHED_FIFO' CAP_SYS_NICE RT_GROUP_SCHED RestrictRealtime= 'user namespaces' "found here: $found"; do
+    says "$words" -u subsumed@jerry "_PID=$(show subsumed@jerry MainPID)" || fail "with $option the journal must name $words"
   done
 }
-refuse PrivateUsers=yes
-refuse RestrictRealtime=yes
-ok "refused real time is explained"
+refuse PrivateUsers=yes 'a user namespace'
+refuse RestrictRealtime=yes 'a system call filter'
+ok "real time refused by PrivateUsers= and RestrictRealtime=: explained in the journal"
+# Last, because it takes real time away from everything in the slice, as on a real host.
+if box sh -c 'cat /sys/fs/cgroup/cpu*/cpu.rt_runtime_us' >/dev/null 2>&1; then
+  refuse CPUWeight=50 'the cpu control group /system.slice'
+  ok "real time refused by RT_GROUP_SCHED: explained in the journal"
+else
+  echo "  skipped: RT_GROUP_SCHED (this kernel has none, or no cpu control group of the old layout)"
+fi
 
 box systemctl stop subsumed@jerry
 until_true "no socket is left" box sh -c '! ls /run/subsumed/*.sock /run/subsumed/*.body'

@@ -8,7 +8,7 @@ use std::sync::Mutex;
 use ipc::clock::{self, Time};
 use ipc::control::Event;
 
-use crate::journal::Journal;
+use crate::journal::{About, Journal};
 
 /// Events that are kept; older ones are in the log only.
 pub const EVENTS_MAX: usize = 1000;
@@ -51,11 +51,22 @@ impl Events {
     /// Notes an event, and logs it. The text may hold what a stranger sent: it is cut to [`TEXT_MAX`] and its
     /// control characters are replaced.
     pub fn note(&self, kind: &str, layer: Option<&str>, text: impl Into<String>) {
-        self.note_causes(kind, layer, &[], text);
+        self.note_about(kind, layer, About::default(), text);
+    }
+
+    /// The same about wires, or ports that are tapped, by name.
+    pub fn note_wires(&self, kind: &str, layer: Option<&str>, wires: &[String], text: impl Into<String>) {
+        let causes = &[];
+        self.note_about(kind, layer, About { wires, causes }, text);
     }
 
     /// The same about a halt, with its causes by name.
     pub fn note_causes(&self, kind: &str, layer: Option<&str>, causes: &[&str], text: impl Into<String>) {
+        let wires = &[];
+        self.note_about(kind, layer, About { wires, causes }, text);
+    }
+
+    fn note_about(&self, kind: &str, layer: Option<&str>, about: About<'_>, text: impl Into<String>) {
         let time_s = clock::monotonic().since(self.began).seconds();
         let mut kept = self.kept.lock().expect("nobody panics holding events");
         let second = time_s as u64;
@@ -64,7 +75,7 @@ impl Events {
             let left_out = std::mem::take(&mut kept.left_out);
             if left_out > 0 {
                 let text = format!("{left_out} more events of layers and callers were left out");
-                self.log(kept.keep(time_s, kind, None, text), &[]);
+                self.log(kept.keep(time_s, kind, None, text), &About::default());
             }
         }
         if matches!(kind, "layer" | "caller") {
@@ -76,13 +87,13 @@ impl Events {
         }
         self.log(
             kept.keep(time_s, kind, layer.map(plain), plain(&text.into())),
-            causes,
+            &about,
         );
     }
 
     /// To the journal with fields, if it is ours; as readable text otherwise.
-    fn log(&self, event: &Event, causes: &[&str]) {
-        if !self.journal.as_ref().is_some_and(|j| j.takes(event, causes)) {
+    fn log(&self, event: &Event, about: &About<'_>) {
+        if !self.journal.as_ref().is_some_and(|j| j.takes(event, about)) {
             eprintln!("[{:9.3}] {}", event.time_s, event.text);
         }
     }

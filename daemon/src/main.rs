@@ -172,14 +172,20 @@ fn introduce(running: &Running, page: Option<&page::Server>) {
     if let Some(page) = page {
         println!("look at it: http://{}/", page.address());
     }
+    // In the repository by way of cargo; elsewhere by the names that are installed.
+    let by_cargo = std::env::var_os("CARGO").is_some();
+    let (ctl, wander) = match by_cargo {
+        true => ("cargo run --release -p tools --", "cargo run --release -p allen"),
+        false => ("subsumectl", "allen-wander"),
+    };
     let other = match shared.name.as_str() {
         "allen" => {
-            println!("plug the next layer in, from another terminal: cargo run --release -p allen");
+            println!("plug the next layer in, from another terminal: {wander}");
             String::new()
         }
         name => format!(" --creature {name}"),
     };
-    println!("ask it: cargo run --release -p tools --{other} status        leave: Ctrl-C");
+    println!("ask it: {ctl}{other} status        leave: Ctrl-C");
 }
 
 /// Reads the creature file again if SIGHUP asked for it; says what would change, and changes nothing.

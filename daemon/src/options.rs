@@ -1,4 +1,4 @@
-//! What `subsumed` may be told on its command line.
+//! What `subsumed` and `subsumed-body` may be told on their command lines.
 //!
 //! Must never do anything with it; manual pages and completions are made from this as well.
 
@@ -78,4 +78,30 @@ impl Options {
             record: self.record.clone(),
         }
     }
+}
+
+/// Runs a creature's simulated body in a process of its own, beside the daemon.
+#[derive(Parser, Debug)]
+#[command(
+    name = "subsumed-body",
+    version,
+    after_help = "Examples:\n  \
+    subsumed-body --name hall &           Allen's office, as body \"hall\"\n  \
+    subsumed --body hall                  the daemon that drives it\n\n\
+    The body is halted until a daemon drives it, and whenever the daemon is dead, frozen or hangs.\n\
+    Status: 0 after a signal or --seconds; 1 when the host refuses; 2 for bad input."
+)]
+pub struct BodyOptions {
+    /// The creature file whose [body] is run; without it, Allen's
+    #[arg(long, value_name = "FILE")]
+    pub creature: Option<PathBuf>,
+    /// Name by which the daemon finds it; the creature's own if not given
+    #[arg(long)]
+    pub name: Option<String>,
+    /// Leave after N seconds
+    #[arg(long, value_name = "N")]
+    pub seconds: Option<f64>,
+    /// Seed of everything random, instead of the creature file's
+    #[arg(long, value_name = "N")]
+    pub seed: Option<u64>,
 }

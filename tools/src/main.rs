@@ -156,7 +156,7 @@ enum Command {
         #[arg(long, value_enum, default_value = "subsumectl")]
         program: manual::Program,
     },
-    /// Writes the manual pages of subsumectl and subsumed into a folder
+    /// Writes the manual pages of subsumectl, subsumed and subsumed-body into a folder
     #[command(after_help = "Example: subsumectl man target/man && man -l target/man/subsumectl.1")]
     Man {
         /// The folder; made if it is not there

@@ -14,6 +14,8 @@ pub(crate) enum Program {
     Subsumectl,
     /// The daemon
     Subsumed,
+    /// A body in a process of its own
+    SubsumedBody,
 }
 
 impl Program {
@@ -21,6 +23,7 @@ impl Program {
         match self {
             Program::Subsumectl => crate::Options::command(),
             Program::Subsumed => daemon::options::Options::command(),
+            Program::SubsumedBody => daemon::options::BodyOptions::command(),
         }
     }
 }
@@ -36,7 +39,7 @@ pub(crate) fn completions(shell: Shell, program: Program) {
 pub(crate) fn pages(folder: &Path) -> Result<(), String> {
     let wrong = |e: std::io::Error| format!("{}: {e}", folder.display());
     std::fs::create_dir_all(folder).map_err(wrong)?;
-    for program in [Program::Subsumectl, Program::Subsumed] {
+    for program in Program::value_variants() {
         clap_mangen::generate_to(program.command(), folder).map_err(wrong)?;
     }
     Ok(())

@@ -1,41 +1,16 @@
 //! `subsumed-body`: runs a creature's simulated body in a process of its own, for `subsumed --body NAME`.
 
-use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Duration;
 
 use clap::Parser;
 use daemon::body::{self, process};
 use daemon::machine::kinds;
+use daemon::options::BodyOptions;
 use ipc::wiring::{Source, check};
 
-/// Runs a creature's simulated body in a process of its own, beside the daemon.
-#[derive(Parser, Debug)]
-#[command(
-    version,
-    after_help = "Examples:\n  \
-    subsumed-body --name hall &           Allen's office, as body \"hall\"\n  \
-    subsumed --body hall                  the daemon that drives it\n\n\
-    The body is halted until a daemon drives it, and whenever the daemon is dead, frozen or hangs.\n\
-    Status: 0 after a signal or --seconds; 1 when the host refuses; 2 for bad input."
-)]
-struct Options {
-    /// The creature file whose [body] is run; without it, Allen's
-    #[arg(long, value_name = "FILE")]
-    creature: Option<PathBuf>,
-    /// Name by which the daemon finds it; the creature's own if not given
-    #[arg(long)]
-    name: Option<String>,
-    /// Leave after N seconds
-    #[arg(long, value_name = "N")]
-    seconds: Option<f64>,
-    /// Seed of everything random, instead of the creature file's
-    #[arg(long, value_name = "N")]
-    seed: Option<u64>,
-}
-
 fn main() -> ExitCode {
-    match read(Options::parse()) {
+    match read(BodyOptions::parse()) {
         Ok(body) => process::main(body),
         Err(message) => {
             eprintln!("{message}");
@@ -45,7 +20,7 @@ fn main() -> ExitCode {
 }
 
 /// The body that the creature file describes.
-fn read(options: Options) -> Result<process::Body, String> {
+fn read(options: BodyOptions) -> Result<process::Body, String> {
     let source = match &options.creature {
         None => Source::new("allen.toml (built in)", allen::CREATURE),
         Some(path) => {

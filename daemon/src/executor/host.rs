@@ -18,6 +18,7 @@ use thread_priority::{
 };
 
 use super::plan::{Plan, Schedule};
+use super::refused;
 use ipc::clock::Span;
 
 /// Longest a SCHED_FIFO thread may run without sleeping before the kernel ends the process: a runaway
@@ -168,9 +169,11 @@ pub fn schedule_fifo(priority: u8) -> Result<(), Refusal> {
     set_thread_priority_and_policy(thread_native_id(), posix, fifo).map_err(|e| Refusal {
         call: format!("sched_setscheduler(SCHED_FIFO, {priority})"),
         errno: errno_of(&e),
-        grants: "granted by CAP_SYS_NICE, by LimitRTPRIO=99 in the unit, or by `ulimit -r 99`; also refused \
-                 inside a cpu control group under RT_GROUP_SCHED, by RestrictRealtime= and in user namespaces"
-            .into(),
+        grants: format!(
+            "granted by CAP_SYS_NICE, by LimitRTPRIO=99 in the unit, or by `ulimit -r 99`; also refused \
+             inside a cpu control group under RT_GROUP_SCHED, by RestrictRealtime= and in user namespaces{}",
+            refused::found()
+        ),
     })
 }
 

@@ -10,6 +10,7 @@ pub mod deadline;
 pub mod gauge;
 pub mod host;
 pub mod plan;
+mod refused;
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};

@@ -122,13 +122,12 @@ impl Plugs {
     pub fn attach(&self, plug: Plug, domain: &Domain) -> Result<Joined, Vec<String>> {
         let plug = settled(plug);
         let result = self.try_attach(&plug, domain);
-        let (layer, pid) = (plug.layer.clone(), plug.pid);
+        let (layer, pid, taps) = (plug.layer.clone(), plug.pid, tapped(&plug));
         match &result {
-            Ok(_) => self.events.note(
-                "layer",
-                Some(&layer),
-                format!("layer {layer} (pid {pid}) attached"),
-            ),
+            Ok(_) => {
+                let text = format!("layer {layer} (pid {pid}) attached");
+                self.events.note_wires("layer", Some(&layer), &taps, text);
+            }
             Err(reasons) => {
                 let text = format!("layer {layer} (pid {pid}) refused: {}", reasons.join("; "));
                 self.events.note("layer", Some(&layer), text);
@@ -241,18 +240,23 @@ impl Plugs {
                     let layer = &attached.plug.layer;
                     if let Some(text) = flow.garbage(&tap.gauge, now) {
                         let text = format!("policy breach: layer {layer}: {text} on {}", tap.tap.from);
-                        breaches.push((None, layer.clone(), text));
+                        breaches.push((None, layer.clone(), vec![tap.tap.from.clone()], text));
                     }
                     if let Some(text) = flow.flood(tap.reader.number(), most, now) {
                         let text = format!("policy breach: layer {layer} floods {}: {text}", tap.tap.from);
                         attached.dismissed.store(true, Ordering::Relaxed);
-                        breaches.push((Some(attached.number), layer.clone(), text));
+                        breaches.push((
+                            Some(attached.number),
+                            layer.clone(),
+                            vec![tap.tap.from.clone()],
+                            text,
+                        ));
                         break;
                     }
                 }
             }
             let flooding = breaches.iter().filter(|(number, ..)| number.is_some());
-            for (_, layer, _) in flooding {
+            for (_, layer, ..) in flooding {
                 if state.barred.len() < BARRED_MAX {
                     state.barred.push((layer.clone(), now + BARRED));
                 }
@@ -265,11 +269,11 @@ impl Plugs {
                     orders::ORDER_TIME
                 );
                 attached.dismissed.store(true, Ordering::Relaxed);
-                breaches.push((Some(attached.number), layer.clone(), text));
+                breaches.push((Some(attached.number), layer.clone(), Vec::new(), text));
             }
         }
-        for (number, layer, text) in breaches {
-            self.events.note("policy", Some(&layer), text);
+        for (number, layer, wires, text) in breaches {
+            self.events.note_wires("policy", Some(&layer), &wires, text);
             if let Some(number) = number {
                 self.detach(number, "was let go");
             }
@@ -292,9 +296,18 @@ impl Plugs {
         let longest = attached.plug.taps.iter().map(|t| t.time_constant).max();
         let longest = longest.unwrap_or(Span::ZERO);
         let text = format!("layer {layer} (pid {pid}) {why}; its taps run out within {longest}");
-        self.events.note("layer", Some(layer), text);
-        for (other, text) in waiting {
-            self.events.note("layer", Some(&other), text);
+        let taps = tapped(&attached.plug);
+        self.events.note_wires("layer", Some(layer), &taps, text);
+        for (other, port, text) in waiting {
+            self.events.note_wires("layer", Some(&other), &[port], text);
         }
     }
+}
+
+/// The ports that a layer taps, each once, by name.
+fn tapped(plug: &Plug) -> Vec<String> {
+    let mut ports: Vec<String> = plug.taps.iter().map(|tap| tap.to.clone()).collect();
+    ports.sort();
+    ports.dedup();
+    ports
 }

@@ -58,18 +58,17 @@ impl State {
         }
     }
 
-    /// Layer `plug` has gone: taps on its ports wait, and who reads its wires is told. What is to be noted of it.
-    pub(super) fn miss(&mut self, plug: &Plug, now: Time) -> Vec<(String, String)> {
+    /// Layer `plug` has gone: taps on its ports wait, and who reads its wires is told. What is to be noted of it: the
+    /// tapper, the port, the words.
+    pub(super) fn miss(&mut self, plug: &Plug, now: Time) -> Vec<(String, String, String)> {
         let mut notes = Vec::new();
         for other in &mut self.attached {
             let name = other.plug.layer.clone();
             for tap in other.taps.iter_mut() {
                 if tap.at.as_ref() == Some(&plug.layer) {
                     tap.joined = false;
-                    notes.push((
-                        name.clone(),
-                        format!("{} waits for layer {}", told(&name, tap), plug.layer),
-                    ));
+                    let text = format!("{} waits for layer {}", told(&name, tap), plug.layer);
+                    notes.push((name.clone(), tap.tap.to.clone(), text));
                 }
             }
             if reads(&other.plug, plug).next().is_some() {
@@ -140,7 +139,7 @@ impl Plugs {
             None => done.to_string(),
             Some(reason) => format!("{not}: {reason}"),
         };
-        let (about, text) = match order {
+        let (about, ports, text) = match order {
             Order::Join(join) => {
                 let tapper = state.attached.iter_mut().find(|a| a.number == join.plug);
                 let Some(tapper) = tapper else { return };
@@ -153,6 +152,7 @@ impl Plugs {
                 let outcome = outcome("joined", "refused");
                 (
                     name.clone(),
+                    vec![join.to.clone()],
                     format!("{} {outcome} at layer {layer}", told(&name, tap)),
                 )
             }
@@ -160,20 +160,22 @@ impl Plugs {
                 let outcome = outcome("released", "did not release");
                 (
                     layer.clone(),
+                    Vec::new(),
                     format!("layer {layer} {outcome} the taps of a layer that has gone"),
                 )
             }
-            Order::Connect { owner, .. } => {
+            Order::Connect { owner, wires } => {
                 let outcome = outcome("reads", "does not read");
                 (
                     layer.clone(),
+                    wires.into_iter().map(|w| w.name).collect(),
                     format!("layer {layer} {outcome} the wires of {owner} again"),
                 )
             }
             Order::Lost { .. } => return,
         };
         drop(state);
-        self.events.note("layer", Some(&about), text);
+        self.events.note_wires("layer", Some(&about), &ports, text);
     }
 
     /// Layer `number` tells what it counted at the taps of others on its ports.

@@ -13,19 +13,19 @@
 
 use std::io::{self, BufRead, BufReader, Read, Write};
 use std::os::unix::net::UnixStream;
-use std::time::Duration;
 
 use serde::{Deserialize, Serialize};
 
 use crate::clock::{self, Span, Time};
 
+mod call;
 mod document;
 mod peer;
 mod place;
 
+pub use call::{CallError, call, running};
 pub use document::{Event, JoinTap, Order, Plug, PlugModule, PlugTap, REFUSAL_MAX, Reply, Request, Versions};
 pub use peer::Peer;
-use place::domain_prefix;
 pub(crate) use place::socket_in_run_dir;
 pub use place::{run_dir, socket_path};
 
@@ -163,91 +163,4 @@ pub fn timed_out(error: &io::Error) -> bool {
         error.kind(),
         io::ErrorKind::WouldBlock | io::ErrorKind::TimedOut | io::ErrorKind::Interrupted
     )
-}
-
-/// Why a daemon could not be called.
-#[derive(Debug)]
-pub enum CallError {
-    /// No daemon of that name runs; `others` do.
-    NoDaemon {
-        /// The creature asked for.
-        creature: String,
-        /// The creatures whose daemons have a socket there.
-        others: Vec<String>,
-    },
-    /// It answers, but is built otherwise.
-    Version {
-        /// The daemon's reasons.
-        reasons: Vec<String>,
-    },
-    /// The socket failed.
-    Io(io::Error),
-}
-
-impl std::fmt::Display for CallError {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self {
-            CallError::NoDaemon { creature, others } => {
-                write!(
-                    f,
-                    "no daemon runs the creature {creature:?} (no answer at {})",
-                    socket_path(creature).display()
-                )?;
-                match others.as_slice() {
-                    [] => write!(f, "; start one with `subsumed`"),
-                    some => write!(f, "; running: {}", some.join(", ")),
-                }
-            }
-            CallError::Version { reasons } => f.write_str(&reasons.join("; ")),
-            CallError::Io(e) => write!(f, "the control socket failed: {e}"),
-        }
-    }
-}
-
-impl std::error::Error for CallError {}
-
-impl From<io::Error> for CallError {
-    fn from(e: io::Error) -> CallError {
-        CallError::Io(e)
-    }
-}
-
-/// Calls the daemon of `creature` as `program`.
-///
-/// # Errors
-/// [`CallError::NoDaemon`] when none runs, [`CallError::Version`] when it was built otherwise.
-pub fn call(creature: &str, program: &str) -> Result<Connection, CallError> {
-    let stream = UnixStream::connect(socket_path(creature)).map_err(|_| CallError::NoDaemon {
-        creature: creature.into(),
-        others: running(),
-    })?;
-    stream.set_read_timeout(Some(Duration::from_secs(10)))?;
-    let mut connection = Connection::over(stream)?;
-    let hello = Request::Hello {
-        versions: Versions::ours(),
-        program: program.into(),
-    };
-    match connection.ask(&hello)? {
-        Reply::Welcome { .. } => Ok(connection),
-        Reply::Refused { reasons } => Err(CallError::Version { reasons }),
-        other => Err(io::Error::other(format!("the daemon answered {other:?} to a greeting")).into()),
-    }
-}
-
-/// Creatures whose daemon answers.
-pub fn running() -> Vec<String> {
-    let Ok(entries) = std::fs::read_dir(run_dir()) else {
-        return Vec::new();
-    };
-    let prefix = domain_prefix();
-    let mut names: Vec<String> = entries
-        .flatten()
-        .filter(|entry| UnixStream::connect(entry.path()).is_ok())
-        .filter_map(|entry| {
-            let name = entry.file_name().into_string().ok()?;
-            Some(name.strip_prefix(&prefix)?.strip_suffix(".sock")?.to_string())
-        })
-        .collect();
-    names.sort();
-    names
 }

@@ -2,10 +2,13 @@
 //!
 //! Must never make a folder or a socket: whoever listens does.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
+
+/// Where the daemons of the whole host have theirs: the unit's RuntimeDirectory=.
+const SYSTEM: &str = "/run/subsumed";
 
 /// The directory of control sockets: `SUBSUMED_RUN`, else `$XDG_RUNTIME_DIR/subsumed`, else
-/// `/run/subsumed` if there is one, else one of the user's own below `/tmp`.
+/// `/run/subsumed` if this user may write there, else one of the user's own below `/tmp`.
 pub fn run_dir() -> PathBuf {
     if let Some(dir) = std::env::var_os("SUBSUMED_RUN") {
         return dir.into();
@@ -13,9 +16,8 @@ pub fn run_dir() -> PathBuf {
     if let Some(dir) = std::env::var_os("XDG_RUNTIME_DIR") {
         return PathBuf::from(dir).join("subsumed");
     }
-    let system = PathBuf::from("/run/subsumed");
-    if system.is_dir() {
-        return system;
+    if rustix::fs::access(SYSTEM, rustix::fs::Access::WRITE_OK).is_ok() {
+        return SYSTEM.into();
     }
     PathBuf::from(format!("/tmp/subsumed-{}", rustix::process::getuid().as_raw()))
 }
@@ -23,6 +25,27 @@ pub fn run_dir() -> PathBuf {
 /// The control socket of the daemon that runs `creature`.
 pub fn socket_path(creature: &str) -> PathBuf {
     socket_in_run_dir(creature, "sock")
+}
+
+/// Where a caller looks for daemons: in the directory of this user, and in that of the host unless `SUBSUMED_RUN`
+/// chose one. So a login session reaches the daemons that systemd runs.
+pub(super) fn run_dirs() -> Vec<PathBuf> {
+    let mut dirs = vec![run_dir()];
+    if std::env::var_os("SUBSUMED_RUN").is_none() && dirs[0] != Path::new(SYSTEM) {
+        dirs.push(SYSTEM.into());
+    }
+    dirs
+}
+
+/// The control socket at which `creature` is called: the first there is.
+pub(super) fn called(creature: &str) -> PathBuf {
+    let own = socket_path(creature);
+    let name = own.file_name().unwrap_or_default();
+    let there = run_dirs()
+        .iter()
+        .map(|dir| dir.join(name))
+        .find(|path| path.exists());
+    there.unwrap_or(own)
 }
 
 /// A socket of this shared-memory domain, `name.suffix`.

@@ -137,6 +137,11 @@ impl Domain {
         Ok(domain)
     }
 
+    /// The node behind it, for services of other kinds in the same domain.
+    pub fn node(&self) -> &Node<Service> {
+        &self.node
+    }
+
     /// Removes what dead processes left in shared memory.
     pub fn clean(&self) {
         let _ = self.node.try_cleanup_dead_nodes();

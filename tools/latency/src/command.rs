@@ -11,19 +11,21 @@ use clap::ValueEnum;
 use ipc::clock::Span;
 use serde_json::{Value, json};
 
-use crate::gate::{self, Compared, LIMITS};
+use crate::compare::compare;
+use crate::gate::{self, Compared};
 use crate::load::Load;
-use crate::pair::{Contest, Side};
+use crate::pair::Contest;
 use crate::plant::Plant;
-use crate::ratio::Ratio;
 use crate::run::{Asked, Outcome, run};
 use crate::{cyclictest, report};
 
 /// The reference to measure against.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Reference {
-    /// cyclictest of Debian's package rt-tests.
+    /// cyclictest of Debian's package rt-tests: how late threads wake
     Cyclictest,
+    /// A bare iceoryx2 blackboard, and a bare sequence lock: how long a message takes to another process
+    Blackboard,
 }
 
 /// Arguments of `subsumectl latency`.
@@ -32,7 +34,8 @@ pub enum Reference {
     subsumectl latency                                    half a minute, nothing else running\n  \
     subsumectl latency --load memory --seconds 60         beside a load on the same processor\n  \
     subsumectl latency --load churn                       with layers that come, go and are killed\n  \
-    subsumectl latency --against cyclictest --rounds 10   in pairs with the reference\n\n\
+    subsumectl latency --against cyclictest --rounds 10   in pairs with the reference\n  \
+    subsumectl latency --seconds 0 --against blackboard   a message to another process, in turns with others\n\n\
     Files in --out: latency.hlog (HdrHistogram interval log, V2), *.hgrm, latency.svg, latency.json, latency.md.\n\
     Only one processor is loaded. Ctrl-C keeps what was measured. docs/timing.md says what each number means.\n\
     Status: 0 done; 1 the host refuses, or --gate does not pass; 2 bad input.")]
@@ -90,7 +93,7 @@ pub fn command(args: &LatencyArgs, json: bool) -> ExitCode {
             return ExitCode::from(2);
         }
     };
-    if args.against.is_some() && !cyclictest::available() {
+    if args.against == Some(Reference::Cyclictest) && !cyclictest::available() {
         eprintln!(
             "subsumectl latency: cyclictest cannot be run; install it (Debian: apt-get install rt-tests)"
         );
@@ -155,93 +158,15 @@ fn ask(args: &LatencyArgs) -> Result<Asked, String> {
         period: args.period,
         spin: args.spin,
         creature_spins: args.spinning,
-        rounds: if args.against.is_some() { args.rounds } else { 0 },
+        against: args.against,
+        rounds: args.rounds,
         round: Duration::from_secs_f64(args.round_seconds),
         plant: args.plant,
     })
 }
 
-/// The part of a side that a comparison looks at.
-type Part = fn(&Side) -> &hdrhistogram::Histogram<u64>;
-
-/// Every comparison of the rounds, and of quiet and churning intervals.
-fn compare(outcome: &Outcome) -> Vec<Compared> {
-    let wake_up: Part = |side| &side.wake_up;
-    let error: Part = |side| &side.period_error;
-    let response: Part = |side| &side.response;
-    let rows: [(&str, Contest, Part, bool); 6] = [
-        ("wake-up, ours / ours (control)", Contest::Control, wake_up, false),
-        ("wake-up, sleep / cyclictest", Contest::Sleep, wake_up, true),
-        (
-            "wake-up and step, sleep / cyclictest's wake-up",
-            Contest::Sleep,
-            response,
-            true,
-        ),
-        (
-            "period error, ours / ours (control)",
-            Contest::Control,
-            error,
-            false,
-        ),
-        ("period error, sleep / cyclictest", Contest::Sleep, error, false),
-        ("period error, spin / cyclictest", Contest::Spin, error, true),
-    ];
-    let ratios = |contest: Contest, part: Part, q: f64| {
-        let each = outcome.rounds_of(contest).map(|r| {
-            let [ours, other] = &r.sides;
-            part(ours).value_at_quantile(q) as f64 / part(other).value_at_quantile(q) as f64
-        });
-        Ratio::of(&each.collect::<Vec<f64>>())
-    };
-    let mut compared = Vec::new();
-    for (what, contest, part, judged) in rows {
-        for (q, quantile, base) in LIMITS {
-            let Some(ratio) = ratios(contest, part, q) else {
-                continue;
-            };
-            let control = ratios(Contest::Control, part, q);
-            compared.push(Compared {
-                what: what.into(),
-                quantile,
-                ratio,
-                limit: judged.then(|| gate::limit(base, control.as_ref())),
-            });
-        }
-    }
-    compared.extend(churn(outcome));
-    compared
-}
-
-/// Step times of churning intervals against the quiet ones before them, over all layers.
-fn churn(outcome: &Outcome) -> Vec<Compared> {
-    if !outcome.churning.contains(&true) {
-        return Vec::new();
-    }
-    let steps = || outcome.tracks.iter().filter(|t| t.metric == "step");
-    let mut compared = Vec::new();
-    for (q, quantile, base) in &LIMITS[..2] {
-        let mut ratios = Vec::new();
-        for track in steps() {
-            for (two, churning) in track.intervals.windows(2).zip(outcome.churning.windows(2)) {
-                if churning == [false, true] {
-                    let value = |k: usize| two[k].histogram.value_at_quantile(*q) as f64;
-                    ratios.push(value(1) / value(0));
-                }
-            }
-        }
-        compared.extend(Ratio::of(&ratios).map(|ratio| Compared {
-            what: "step, with churn / without".into(),
-            quantile,
-            ratio,
-            limit: Some(*base),
-        }));
-    }
-    compared
-}
-
 fn answer(args: &LatencyArgs, asked: &Asked, outcome: &Outcome, json: bool) -> ExitCode {
-    let compared = compare(outcome);
+    let compared = compare(asked, outcome);
     let allocations = daemon::alloc::broken();
     let faults = gate::faults(&compared, &outcome.kept, allocations, &outcome.refusals);
     let summary = summary(asked, outcome, &compared, allocations, &faults);
@@ -276,7 +201,7 @@ fn summary(
         "load": asked.load.name(), "cpu": asked.cpu, "priority": asked.priority,
         "period_ns": asked.period.0, "spin_ns": asked.spin.0,
         "creature_wakes_by": if asked.creature_spins { "spin" } else { "sleep" },
-        "rounds": outcome.rounds_of(Contest::Sleep).count(), "round_s": asked.round.as_secs_f64(),
+        "rounds": outcome.rounds_of(Contest::Sleep).count().max(outcome.across.len()), "round_s": asked.round.as_secs_f64(),
         "interrupted": outcome.interrupted, "planted": plant,
         "refusals": outcome.refusals, "threads": outcome.kept, "allocations": allocations,
         "churn_events": outcome.churn_events, "compared": compared, "faults": faults,

@@ -3,9 +3,11 @@
 //! Must never spin on more than one processor, run real-time threads without a limit of time, or change
 //! anything of the host outside its own processes. What every number means is written in `docs/timing.md`.
 
+pub mod across;
 pub mod cases;
 pub mod churn;
 pub mod command;
+pub mod compare;
 pub mod creature;
 pub mod cyclictest;
 pub mod gate;

@@ -10,7 +10,9 @@ use indicatif::{ProgressBar, ProgressStyle};
 use ipc::clock::Span;
 use ipc::wiring::creature::Wake;
 
+use crate::across;
 use crate::churn::Churn;
+use crate::command::Reference;
 use crate::creature::{self, Alive, Kept};
 use crate::load::{Load, Loaded};
 use crate::pair::{self, CONTESTS, Contest, Round};
@@ -36,7 +38,9 @@ pub struct Asked {
     pub spin: Span,
     /// Whether the creature spins.
     pub creature_spins: bool,
-    /// Paired rounds of each contest; none without a reference.
+    /// What is measured against, if anything.
+    pub against: Option<Reference>,
+    /// Paired rounds of each contest.
     pub rounds: usize,
     /// How long each is.
     pub round: Duration,
@@ -53,8 +57,10 @@ pub struct Outcome {
     pub tracks: Vec<Track>,
     /// What the host counted of the threads.
     pub kept: Vec<Kept>,
-    /// The rounds.
+    /// The rounds against cyclictest.
     pub rounds: Vec<Round>,
+    /// The rounds across processes.
+    pub across: Vec<across::Round>,
     /// Step times of quiet and churning intervals in turn, beginning with a quiet one: (churning, track, interval).
     pub churning: Vec<bool>,
     /// Who came, left or was killed.
@@ -80,13 +86,19 @@ pub fn run(asked: &Asked) -> Result<Outcome, String> {
     for signal in [signal_hook::consts::SIGINT, signal_hook::consts::SIGTERM] {
         signal_hook::flag::register(signal, leave.clone()).map_err(|e| e.to_string())?;
     }
-    let paired = (asked.round + ROUND_EXTRA) * (asked.rounds * CONTESTS.len()) as u32;
+    let contests = match asked.against {
+        Some(Reference::Cyclictest) => CONTESTS.len(),
+        Some(Reference::Blackboard) => 1,
+        None => 0,
+    };
+    let paired = (asked.round + ROUND_EXTRA) * (asked.rounds * contests) as u32;
     let progress = Progress::new(asked.length + paired);
     let mut outcome = Outcome {
         began: SystemTime::now(),
         tracks: Vec::new(),
         kept: Vec::new(),
         rounds: Vec::new(),
+        across: Vec::new(),
         churning: Vec::new(),
         churn_events: 0,
         refusals: Vec::new(),
@@ -96,7 +108,6 @@ pub fn run(asked: &Asked) -> Result<Outcome, String> {
     if asked.length > Duration::ZERO {
         measure_creature(asked, &leave, &progress, &mut outcome)?;
     }
-    let interrupted = || leave.load(Ordering::Relaxed);
     let setting = pair::Setting {
         cpu: asked.cpu,
         main_cpu: asked.other_cpu,
@@ -106,28 +117,63 @@ pub fn run(asked: &Asked) -> Result<Outcome, String> {
         round: asked.round,
         plant: asked.plant,
     };
-    'rounds: for n in 0..asked.rounds {
-        for contest in CONTESTS {
-            progress.say(&format!(
-                "round {} of {}: {}",
-                n + 1,
-                asked.rounds,
-                contest.sides().0
-            ));
-            let looking = || {
-                progress.tick();
-                interrupted()
-            };
-            match pair::round(&setting, contest, n % 2 == 1, &looking).map_err(|e| e.to_string())? {
-                Some(round) => outcome.keep(round, asked.round),
-                None => break 'rounds,
-            }
-        }
+    let looking = || {
+        progress.tick();
+        leave.load(Ordering::Relaxed)
+    };
+    match asked.against {
+        Some(Reference::Cyclictest) => measure_pairs(asked, &setting, &looking, &progress, &mut outcome)?,
+        Some(Reference::Blackboard) => measure_across(asked, &setting, &looking, &progress, &mut outcome)?,
+        None => {}
     }
     drop(load);
     progress.end();
-    outcome.interrupted = interrupted();
+    outcome.interrupted = leave.load(Ordering::Relaxed);
     Ok(outcome)
+}
+
+fn measure_pairs(
+    asked: &Asked,
+    setting: &pair::Setting,
+    looking: &dyn Fn() -> bool,
+    progress: &Progress,
+    outcome: &mut Outcome,
+) -> Result<(), String> {
+    for n in 0..asked.rounds {
+        for contest in CONTESTS {
+            let (n_shown, ours) = (n + 1, contest.sides().0);
+            progress.say(&format!("round {n_shown} of {}: {ours}", asked.rounds));
+            match pair::round(setting, contest, n % 2 == 1, looking).map_err(|e| e.to_string())? {
+                Some(round) => outcome.keep(round, asked.round),
+                None => return Ok(()),
+            }
+        }
+    }
+    Ok(())
+}
+
+fn measure_across(
+    asked: &Asked,
+    setting: &pair::Setting,
+    looking: &dyn Fn() -> bool,
+    progress: &Progress,
+    outcome: &mut Outcome,
+) -> Result<(), String> {
+    if asked.cpu == asked.other_cpu {
+        return Err("--against blackboard: expected two processors, one for each process".into());
+    }
+    for n in 0..asked.rounds {
+        progress.say(&format!(
+            "round {} of {}: to another process",
+            n + 1,
+            asked.rounds
+        ));
+        match across::round(setting, looking)? {
+            Some(round) => outcome.keep_across(round, asked.round),
+            None => return Ok(()),
+        }
+    }
+    Ok(())
 }
 
 fn measure_creature(
@@ -188,9 +234,36 @@ fn measure_creature(
 }
 
 impl Outcome {
+    /// The track of this name and metric, a new one if need be.
+    fn track(&mut self, name: &str, metric: &'static str) -> &mut Track {
+        let known = self
+            .tracks
+            .iter()
+            .position(|t| t.of == name && t.metric == metric);
+        let place = known.unwrap_or_else(|| {
+            self.tracks.push(Track::new(name, metric));
+            self.tracks.len() - 1
+        });
+        &mut self.tracks[place]
+    }
+
+    /// When a round of this length that has just ended began.
+    fn since_began(&self, length: Duration) -> Duration {
+        let now = SystemTime::now().duration_since(self.began).unwrap_or_default();
+        now.saturating_sub(length)
+    }
+
+    fn keep_across(&mut self, round: across::Round, length: Duration) {
+        let began = self.since_began(length);
+        for (means, ages) in across::MEANS.iter().zip(&round) {
+            self.track(means.name(), "to-process")
+                .add(began, length, ages.clone());
+        }
+        self.across.push(round);
+    }
+
     fn keep(&mut self, round: Round, length: Duration) {
-        let began = SystemTime::now().duration_since(self.began).unwrap_or_default();
-        let began = began.saturating_sub(length);
+        let began = self.since_began(length);
         let (ours, other) = round.contest.sides();
         for (name, side) in [(ours, &round.sides[0]), (other, &round.sides[1])] {
             for (metric, h) in [
@@ -202,15 +275,7 @@ impl Outcome {
                 if metric == "response" && name.starts_with("cyclictest") {
                     continue;
                 }
-                let known = self
-                    .tracks
-                    .iter()
-                    .position(|t| t.of == name && t.metric == metric);
-                let place = known.unwrap_or_else(|| {
-                    self.tracks.push(Track::new(name, metric));
-                    self.tracks.len() - 1
-                });
-                self.tracks[place].add(began, length, h.clone());
+                self.track(name, metric).add(began, length, h.clone());
             }
         }
         for refusal in &round.refusals {

@@ -4,7 +4,7 @@
 
 use std::process::ExitCode;
 
-use crate::{churn, load};
+use crate::{across, churn, load};
 
 /// Does a worker's work if this process was started as one.
 pub fn dispatch() -> Option<ExitCode> {
@@ -14,6 +14,7 @@ pub fn dispatch() -> Option<ExitCode> {
     match name.as_str() {
         load::WORKER => Some(load::work(&rest)),
         churn::TAPPER => Some(churn::tap()),
+        across::WORKER => Some(across::dispatch(&rest)),
         churn::READER => Some(churn::read(&rest)),
         _ => None,
     }

@@ -23,6 +23,7 @@ fn a_run_measures_every_layer_and_leaves_every_file() {
         period: Span::millis(5),
         spin: Span::micros(50),
         creature_spins: false,
+        against: None,
         rounds: 0,
         round: Duration::from_secs(1),
         plant: None,
