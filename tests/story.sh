@@ -41,7 +41,7 @@ never_shown() {
   ctl "$@" >"$work/shown"
   ! grep -qE "$pattern" "$work/shown" || fail "$what: $pattern in subsumectl $*"
 }
-plug() { "$bin/allen-$1" --creature allen >>"$work/$1.log" 2>&1 & }
+plug() { "$bin/allen-$1" --creature allen "${@:2}" >>"$work/$1.log" 2>&1 & }
 # Its beats are counted on: level 0 never stops, whoever comes and goes above it.
 level_0_goes_on() {
   local before after
@@ -65,6 +65,7 @@ explore=""
 grep -q 'no module "avoid"' "$work/explore.log" || fail "level 2 must say what is missing"
 
 echo "== level 1, a process"
+grep -q -- '--wait' <("$bin/allen-explore" --help) || fail "the help must name --wait"
 plug wander
 wander=$!
 until_shown "wander is attached" '^wander .*attached' status

@@ -34,7 +34,7 @@ const RETRY: Duration = Duration::from_millis(250);
 /// Runs a layer process to its end: what its `main` calls.
 ///
 /// Arguments: `--creature NAME` (default: the one the manifest names), `--once` (leave when the daemon
-/// leaves), `--help`. Status: 0 after a signal, 1 when refused or the daemon is gone, 2 for bad input.
+/// leaves), `--wait` (try until let in), `--help`. Status: 0 after a signal, 1 when refused or the daemon is gone, 2 for bad input.
 pub fn run(manifest: Source, kinds: Kinds) -> ExitCode {
     match Options::read(std::env::args().skip(1)) {
         Ok(options) => match attend(&manifest, &kinds, &options) {
@@ -62,9 +62,10 @@ pub fn run(manifest: Source, kinds: Kinds) -> ExitCode {
 fn help(manifest: &Source) -> String {
     format!(
         "A layer of a subsumption creature, as a process of its own ({}).\n\n\
-         Usage: {} [--creature NAME] [--once]\n\n\
+         Usage: {} [--creature NAME] [--once] [--wait]\n\n\
          \x20 --creature NAME  the running creature to join (default: the one the manifest names)\n\
          \x20 --once           leave when the daemon leaves, instead of waiting for the next one\n\
+         \x20 --wait           try until it is let in: for a layer that taps another, which may come later\n\
          \x20 --help           this text\n\n\
          Example: {} --creature allen\n\
          Ctrl-C detaches and leaves; the creature goes on with the layers below.",
@@ -83,6 +84,7 @@ fn program() -> String {
 struct Options {
     creature: Option<String>,
     once: bool,
+    wait: bool,
 }
 
 enum Asked {
@@ -97,6 +99,7 @@ impl Options {
             match arg.as_str() {
                 "--help" | "-h" => return Err(Asked::Help),
                 "--once" => options.once = true,
+                "--wait" => options.wait = true,
                 "--creature" => {
                     let name = args
                         .next()
@@ -173,12 +176,12 @@ fn attend(manifest: &Source, kinds: &Kinds, options: &Options) -> Result<(), Tro
             }
             // Before the first success a refusal is final; afterwards the daemon may just not be back yet, or a
             // layer whose ports this one taps.
-            Err(trouble) if !attached_before => return Err(trouble),
+            Err(trouble) if !attached_before && !options.wait => return Err(trouble),
             Err(Trouble::Call(CallError::NoDaemon { .. })) => {}
             Err(trouble) => {
                 let text = trouble.to_string();
                 if text != told {
-                    eprintln!("not attached again yet: {text}");
+                    eprintln!("not attached yet: {text}");
                     told = text;
                 }
             }
