@@ -217,6 +217,18 @@ fn who_holds_a_port_of_a_plugged_layer_and_why_can_be_asked() {
 }
 
 #[test]
+fn a_layer_may_wait_for_the_one_that_it_taps() {
+    let stage = Stage::new("waits");
+    let mut daemon = daemon(&stage);
+    let mut top = tower::layer_with(&stage, "top", TOP, &["--wait"]);
+    top.says("there is no module \"relay\"", 1);
+    let _middle = attached(&stage, "middle", MIDDLE);
+    wait_for("level 2 is heard", || says(&stage, "ground.out") == 3.0);
+    assert!(top.leave().success());
+    assert!(daemon.leave().success());
+}
+
+#[test]
 fn a_stopped_owner_comes_back_and_is_tapped_again() {
     let stage = Stage::new("stopped");
     let mut daemon = daemon(&stage);

@@ -108,12 +108,17 @@ pub(crate) fn daemon_with(stage: &Stage, arguments: &[&str]) -> Player {
 
 /// A layer process of this manifest.
 pub(crate) fn layer(stage: &Stage, name: &str, manifest: &str) -> Player {
+    layer_with(stage, name, manifest, &[])
+}
+
+/// The same, told more.
+pub(crate) fn layer_with(stage: &Stage, name: &str, manifest: &str, arguments: &[&str]) -> Player {
     let file = stage.run.join(format!("{name}.toml"));
     std::fs::write(&file, manifest).expect("the stage takes files");
     let daemon = std::path::Path::new(env!("CARGO_BIN_EXE_subsumed"));
     let program = daemon.with_file_name("examples").join("layer");
     let manifest = file.display().to_string();
-    stage.start_with(program, &[], &[("LAYER_MANIFEST", &manifest)])
+    stage.start_with(program, arguments, &[("LAYER_MANIFEST", &manifest)])
 }
 
 pub(crate) fn attached(stage: &Stage, name: &str, manifest: &str) -> Player {
