@@ -41,6 +41,9 @@ const RECORD_TIME: Duration = Duration::from_secs(30);
 /// How often a caller's thread looks whether it is to end.
 const LOOK: Duration = Duration::from_millis(200);
 
+/// How often that of an attached layer looks whether there are orders for it.
+const ORDERS_LOOK: Duration = Duration::from_millis(20);
+
 /// The socket, and the thread that answers.
 pub struct Control {
     path: PathBuf,
@@ -220,6 +223,14 @@ fn converse(
 ) -> io::Result<Farewell> {
     let mut greeted = false;
     loop {
+        if let Some(joined) = plugged {
+            if joined.dismissed.load(Ordering::Relaxed) {
+                return Ok(Farewell::None);
+            }
+            while let Some((number, order)) = joined.orders.next() {
+                connection.send(&Reply::Order { number, order })?;
+            }
+        }
         let request = match connection.receive::<Request>() {
             Ok(Some(request)) => request,
             Ok(None) => return Ok(Farewell::None),
@@ -259,12 +270,24 @@ fn converse(
                         let number = joined.number;
                         caller.stays();
                         *plugged = Some(joined);
+                        connection.socket().set_read_timeout(Some(ORDERS_LOOK))?;
                         Reply::Plugged { plug: number }
                     }
                     Err(reasons) => Reply::Refused { reasons },
                 }
             }
             Request::Unplug => return Ok(Farewell::Said),
+            // What an attached layer reports has no answer.
+            Request::Obeyed { order, refused } if plugged.is_some() => {
+                let joined = plugged.as_ref().expect("it is attached");
+                shared.plugs.obeyed(joined.number, order, refused);
+                continue;
+            }
+            Request::Counts { taps } if plugged.is_some() => {
+                let joined = plugged.as_ref().expect("it is attached");
+                shared.plugs.counted(joined.number, &taps);
+                continue;
+            }
             Request::Record { past, seconds, ring } => {
                 connection.send(&Reply::Recording)?;
                 caller.records();
@@ -313,10 +336,7 @@ fn record(
 /// Whether a caller that says nothing has to go. A layer speaks with its wires; its socket only tells that it
 /// lives.
 fn is_over(caller: &Caller, plugged: Option<&Joined>) -> bool {
-    match plugged {
-        Some(joined) => joined.dismissed.load(Ordering::Relaxed),
-        None => clock::monotonic().since(caller.last_spoke()) > SILENCE,
-    }
+    plugged.is_none() && clock::monotonic().since(caller.last_spoke()) > SILENCE
 }
 
 fn greet(theirs: &Versions, program: &str, shared: &Shared) -> Reply {
@@ -363,10 +383,13 @@ fn answer(request: Request, shared: &Shared) -> Reply {
                 }
             }
         },
-        Request::Hello { .. } | Request::Plug(_) | Request::Unplug | Request::Record { .. } => {
-            Reply::Refused {
-                reasons: vec!["not now".into()],
-            }
-        }
+        Request::Hello { .. }
+        | Request::Plug(_)
+        | Request::Unplug
+        | Request::Obeyed { .. }
+        | Request::Counts { .. }
+        | Request::Record { .. } => Reply::Refused {
+            reasons: vec!["not now".into()],
+        },
     }
 }

@@ -2,16 +2,15 @@
 //!
 //! Must never know how a newcomer was heard of: real time and the virtual clock ask the same questions.
 
-use std::collections::HashMap;
 use std::sync::Arc;
 
-use afsm::layer::Command;
+use afsm::places::Places;
 use ipc::clock::Span;
 use ipc::control::{Plug, PlugTap};
 use ipc::message::Kind;
-use ipc::wire::{Page, Reader, Room, TapEnd, TapGauge};
+use ipc::wire::{Page, Room, TAPS_MAX, TapEnd, TapGauge};
 use ipc::wiring::creature::{Creature, How, Outsiders};
-use ipc::wiring::directory::Directory;
+use ipc::wiring::directory::{Directory, Listed};
 use ipc::wiring::policy::{self, Claim, ClaimedTap};
 
 /// Where a port of the creature is found: which layer, and which register or outlet of it.
@@ -26,54 +25,24 @@ const MODULES_MAX: usize = 512;
 /// Most taps of an attached layer: fewer than a layer below takes up between two beats.
 const PLUG_TAPS_MAX: usize = 64;
 
-type Places = HashMap<String, Place>;
+/// A layer that is attached: the number of its coming, and what it asked for.
+pub type Present<'p> = (u32, &'p Plug);
 
 /// What a creature lets outsiders do, and where its ports are.
 #[derive(Clone, Debug)]
 pub struct Policy {
     creature: Creature,
     directory: Directory,
-    inputs: Places,
-    outputs: Places,
-}
-
-/// A tap about to be joined.
-#[derive(Debug)]
-pub struct Joining {
-    /// Which layer of the creature takes it up.
-    pub station: usize,
-    /// What that layer is told.
-    pub command: Command,
-    /// Where what happens at it is counted.
-    pub gauge: Arc<TapGauge>,
-    /// Its messages.
-    pub reader: Reader,
+    places: Vec<Places>,
 }
 
 impl Policy {
     /// The policy of `creature`, which shows `directory`.
     pub fn new(creature: Creature, directory: Directory) -> Policy {
-        let (mut inputs, mut outputs) = (Places::new(), Places::new());
-        for (station, layer) in creature.layers.iter().enumerate() {
-            let (mut input, mut output) = (0, 0);
-            for module in &layer.modules {
-                for port in module.declaration.inputs {
-                    inputs.insert(format!("{}.{}", module.name, port.name), (station, input));
-                    input += 1;
-                }
-                inputs.insert(format!("{}.reset", module.name), (station, input));
-                input += 1;
-                for port in module.declaration.outputs {
-                    outputs.insert(format!("{}.{}", module.name, port.name), (station, output));
-                    output += 1;
-                }
-            }
-        }
         Policy {
+            places: creature.layers.iter().map(Places::of).collect(),
             creature,
             directory,
-            inputs,
-            outputs,
         }
     }
 
@@ -84,65 +53,34 @@ impl Policy {
 
     /// Where the input port `name` of a module of the creature is found.
     pub fn input(&self, name: &str) -> Option<Place> {
-        self.inputs.get(name).copied()
+        self.place(How::Suppress, name)
     }
 
     /// Where the output port `name` of a module of the creature is found.
     pub fn output(&self, name: &str) -> Option<Place> {
-        self.outputs.get(name).copied()
+        self.place(How::Inhibit, name)
+    }
+
+    /// Where a tap that acts so on the port `name` of a module of the creature is joined.
+    pub fn place(&self, how: How, name: &str) -> Option<Place> {
+        let mut layers = self.places.iter().enumerate();
+        layers.find_map(|(station, places)| Some((station, places.tapped(how, name)?)))
     }
 
     /// What the creature shows to newcomers, those `attached` included.
-    pub fn directory_with<'p>(&self, attached: impl IntoIterator<Item = &'p Plug>) -> Directory {
+    pub fn directory_with<'p>(&self, attached: impl IntoIterator<Item = Present<'p>>) -> Directory {
         let mut directory = self.directory.clone();
-        for plug in attached {
-            directory.layers.push(plug.layer.clone());
-            directory.outputs.extend(plug.outputs.iter().cloned());
+        for (number, plug) in attached {
+            directory.join(number, plug);
         }
         directory
-    }
-
-    /// The tap of `plug`, which was let in as number `number` with its wires in `page`; counted at `gauge`.
-    ///
-    /// # Panics
-    /// When there were reasons against it.
-    pub fn join(
-        &self,
-        number: u32,
-        plug: &Plug,
-        tap: &PlugTap,
-        page: &Arc<Page>,
-        gauge: Arc<TapGauge>,
-    ) -> Joining {
-        let mut outputs = plug.outputs.iter();
-        let index = outputs.position(|o| o.name == tap.from).expect("checked");
-        let reader = page.reader(index, plug.outputs[index].kind).expect("checked");
-        let end = TapEnd {
-            reader: reader.clone(),
-            time_constant: tap.time_constant,
-            level: plug.level,
-            plug: number,
-            gauge: gauge.clone(),
-            room: Room::full(),
-        };
-        let (places, command): (_, fn(usize, TapEnd) -> Command) = match tap.how {
-            How::Suppress => (&self.inputs, Command::Suppress),
-            How::Inhibit => (&self.outputs, Command::Inhibit),
-        };
-        let (station, port) = places[&tap.to];
-        Joining {
-            station,
-            command: command(port, end),
-            gauge,
-            reader,
-        }
     }
 
     /// Every reason why `plug` may not join those `attached`.
     pub fn reasons_against<'p>(
         &self,
         plug: &Plug,
-        attached: impl IntoIterator<Item = &'p Plug>,
+        attached: impl IntoIterator<Item = Present<'p>>,
     ) -> Vec<String> {
         let mut reasons = Vec::new();
         let outsiders = &self.creature.outsiders;
@@ -151,18 +89,21 @@ impl Policy {
                 reasons.push(reason);
             }
         };
-        let attached: Vec<&Plug> = attached.into_iter().collect();
+        let attached: Vec<Present<'p>> = attached.into_iter().collect();
+        let host = self.directory_with(attached.iter().copied());
         against(
             attached.len() >= outsiders.layers_max,
             format!("{} layers are attached, the most allowed", attached.len()),
         );
+        let ports = [&plug.outputs, &plug.inputs];
         against(
-            plug.outputs.len() > ipc::wire::WIRES_MAX,
-            "too many outputs".into(),
+            ports.iter().any(|ports| ports.len() > ipc::wire::WIRES_MAX),
+            "too many outputs or inputs".into(),
         );
         against(!crate::is_name(&plug.layer), "the layer's name is not one".into());
         against(plug.period == Span::ZERO, "a layer needs a period".into());
-        let longest = plug.outputs.iter().map(|o| o.name.len()).max().unwrap_or(0);
+        let ports = || plug.outputs.iter().chain(&plug.inputs);
+        let longest = ports().map(|o| o.name.len()).max().unwrap_or(0);
         against(
             longest > PORT_NAME_MAX || plug.owner.len() > PORT_NAME_MAX,
             "its names are too long".into(),
@@ -171,30 +112,91 @@ impl Policy {
             plug.modules.len() > MODULES_MAX || plug.taps.len() > PLUG_TAPS_MAX,
             "it has too many modules or taps".into(),
         );
-        for tap in &plug.taps {
-            self.reasons_against_tap(plug, tap, &mut against);
+        let module = |l: &Listed| {
+            l.name
+                .split_once('.')
+                .map_or("", |(module, _)| module)
+                .to_string()
+        };
+        let taken = ports().map(module).find(|module| host.has_module(module));
+        let taken_name = taken.clone().unwrap_or_default();
+        against(
+            taken.is_some(),
+            format!("a module {taken_name:?} is there already"),
+        );
+        let own = |name: &String, of: &[Listed]| of.iter().any(|l| l.name == *name);
+        let opened = plug.open_taps.iter();
+        let opened = opened.filter(|name| !own(name, &plug.inputs) && !own(name, &plug.outputs));
+        let reads = plug.open_reads.iter().flatten();
+        for name in opened.chain(reads.filter(|name| !own(name, &plug.outputs))) {
+            against(true, format!("it opens {name}, which is not its own"));
         }
-        let breaches = policy::breaches(&self.directory_with(attached), &claim(plug));
+        for (from, _) in &plug.wires {
+            let level = host
+                .outputs
+                .iter()
+                .find(|o| o.name == *from)
+                .and_then(|o| o.level);
+            against(
+                level.is_some_and(|level| level > plug.level),
+                format!("{from} is of a level above {}", plug.level),
+            );
+        }
+        for tap in &plug.taps {
+            self.reasons_against_tap(plug, tap, &host, &mut against);
+            let on = |t: &&PlugTap| t.how == tap.how && t.to == tap.to;
+            let taps = attached.iter().flat_map(|(_, p)| &p.taps).chain(&plug.taps);
+            let filed = self.creature.layers.iter().flat_map(|l| &l.taps);
+            let filed = filed.filter(|t| t.how == tap.how && t.to.to_string() == tap.to);
+            let taps = taps.filter(on).count() + filed.count();
+            against(
+                taps > TAPS_MAX,
+                format!("{} has as many taps as a port may have, {TAPS_MAX}", tap.to),
+            );
+        }
+        let breaches = policy::breaches(&host, &claim(plug));
         reasons.extend(breaches.iter().map(policy::Breach::to_string));
         reasons
     }
 
-    fn reasons_against_tap(&self, plug: &Plug, tap: &PlugTap, against: &mut impl FnMut(bool, String)) {
+    /// Every reason why a tap of `plug`, which stood before, may not be joined to a port of `owner`, which has come
+    /// back.
+    pub fn reasons_against_rejoining(&self, plug: &Plug, tap: &PlugTap, owner: Present<'_>) -> Vec<String> {
+        let host = self.directory_with([owner]);
+        let mut reasons = Vec::new();
+        self.reasons_against_tap(plug, tap, &host, &mut |wrong, reason| {
+            if wrong {
+                reasons.push(reason);
+            }
+        });
+        let claim = Claim {
+            reads: Vec::new(),
+            taps: vec![claimed(tap)],
+            ..claim(plug)
+        };
+        let breaches = policy::breaches(&host, &claim);
+        reasons.extend(breaches.iter().map(policy::Breach::to_string));
+        reasons
+    }
+
+    fn reasons_against_tap(
+        &self,
+        plug: &Plug,
+        tap: &PlugTap,
+        host: &Directory,
+        against: &mut impl FnMut(bool, String),
+    ) {
         let to = &tap.to;
-        let ports = if tap.how == How::Suppress {
-            &self.directory.inputs
-        } else {
-            &self.directory.outputs
+        let own = match tap.how {
+            How::Suppress => &self.directory.inputs,
+            How::Inhibit => &self.directory.outputs,
         };
-        let target = ports.iter().find(|p| p.name == *to);
+        let target = tapped(tap.how, host, to);
         let source = plug.outputs.iter().find(|o| o.name == tap.from);
-        let places = if tap.how == How::Suppress {
-            &self.inputs
-        } else {
-            &self.outputs
-        };
+        // The body's ports are listed, and are nobody's to tap.
+        let closed = own.iter().any(|p| p.name == *to) && self.place(tap.how, to).is_none();
         against(
-            target.is_none() || !places.contains_key(to),
+            target.is_none() || closed,
             format!("there is no such port {to} to tap"),
         );
         against(
@@ -219,19 +221,71 @@ impl Policy {
     }
 }
 
+/// The port that a tap acts on.
+fn tapped<'h>(how: How, host: &'h Directory, name: &str) -> Option<&'h Listed> {
+    let ports = match how {
+        How::Suppress => &host.inputs,
+        How::Inhibit => &host.outputs,
+    };
+    ports.iter().find(|p| p.name == *name)
+}
+
+/// Whether an attached layer has the port that a tap acts on.
+pub fn has_port(plug: &Plug, tap: &PlugTap) -> bool {
+    let ports = match tap.how {
+        How::Suppress => &plug.inputs,
+        How::Inhibit => &plug.outputs,
+    };
+    ports.iter().any(|p| p.name == tap.to)
+}
+
+/// The end of a tap of `plug`, which was let in as number `number` with its wires in `page`; counted at `gauge`.
+///
+/// # Panics
+/// When there were reasons against it.
+pub fn tap_end(number: u32, plug: &Plug, tap: &PlugTap, page: &Arc<Page>, gauge: Arc<TapGauge>) -> TapEnd {
+    let mut outputs = plug.outputs.iter();
+    let index = outputs.position(|o| o.name == tap.from).expect("checked");
+    TapEnd {
+        reader: page.reader(index, plug.outputs[index].kind).expect("checked"),
+        time_constant: tap.time_constant,
+        level: plug.level,
+        plug: number,
+        gauge,
+        room: Room::full(),
+    }
+}
+
+/// What a layer asks for, with what it says of its ports put in order: their level is its own, and its wires lie in
+/// its page as it lists them.
+pub fn settled(mut plug: Plug) -> Plug {
+    for input in &mut plug.inputs {
+        input.level = Some(plug.level);
+    }
+    for (index, output) in plug.outputs.iter_mut().enumerate() {
+        output.level = Some(plug.level);
+        output.owner.clone_from(&plug.owner);
+        output.index = index;
+    }
+    plug
+}
+
 /// What a layer asks for, as the creature's policy judges it.
 fn claim(plug: &Plug) -> Claim<'_> {
     let own = |name: &str| plug.outputs.iter().any(|o| o.name == name);
     let reads = plug.wires.iter().map(|(from, _)| from.as_str());
-    let tap = |tap: &PlugTap| ClaimedTap {
-        how: tap.how,
-        to: tap.to.clone(),
-        time_constant: tap.time_constant,
-    };
     Claim {
         layer: &plug.layer,
         level: plug.level,
         reads: reads.filter(|from| !own(from)).collect(),
-        taps: plug.taps.iter().map(tap).collect(),
+        taps: plug.taps.iter().map(claimed).collect(),
+    }
+}
+
+fn claimed(tap: &PlugTap) -> ClaimedTap {
+    ClaimedTap {
+        how: tap.how,
+        to: tap.to.clone(),
+        time_constant: tap.time_constant,
     }
 }

@@ -257,6 +257,8 @@ pub fn start(
             .reader
             .clone(),
         gauge: filed.gauge.clone(),
+        at: None,
+        joined: true,
     });
     let records = Arc::new(Mutex::new(records));
     let watcher = Watcher {

@@ -275,12 +275,16 @@ pub struct WatchedTap {
     pub reader: Reader,
     /// Its counters.
     pub gauge: Arc<TapGauge>,
+    /// The attached layer at whose port it acts; none for one of the daemon's own.
+    pub at: Option<String>,
+    /// Whether it stands there, or waits for that layer.
+    pub joined: bool,
 }
 
 /// Shows a tap: whether it holds, and for how long still.
 pub fn tap(t: &WatchedTap, now: Time) -> Value {
     // What is stamped in the future is no message: see the register.
-    let reading = t.reader.read().filter(|r| r.stamp <= now + AHEAD_MAX);
+    let reading = t.reader.read().filter(|r| t.joined && r.stamp <= now + AHEAD_MAX);
     let window = reading.map(|r| Window {
         stamp: r.stamp.min(now),
         time_constant: t.time_constant,
@@ -291,6 +295,7 @@ pub fn tap(t: &WatchedTap, now: Time) -> Value {
         "from": t.from, "to": t.to, "kind": t.how, "layer": t.layer.0, "level": t.layer.1, "time_constant_ms": t.time_constant.as_millis_f64(),
         "holds": remaining > Span::ZERO, "remaining_ms": remaining.as_millis_f64(),
         "delivered": counts.delivered, "rejected": counts.rejected, "faults": counts.faults,
+        "at": t.at, "joined": t.joined,
     })
 }
 

@@ -148,6 +148,8 @@ impl Watcher {
                     layer: (a.plug.layer.clone(), a.plug.level),
                     reader: t.reader.clone(),
                     gauge: t.gauge.clone(),
+                    at: t.at.clone(),
+                    joined: t.joined,
                 };
                 taps.push(status::tap(&watched, now));
             }

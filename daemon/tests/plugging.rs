@@ -77,7 +77,12 @@ impl Layer {
                 level: Some(1),
                 owner,
                 index: 0,
+                plug: 0,
             }],
+            inputs: Vec::new(),
+            open_taps: Vec::new(),
+            open_reads: None,
+            neighbours: Vec::new(),
             modules: Vec::new(),
             wires: Vec::new(),
             taps: vec![PlugTap {

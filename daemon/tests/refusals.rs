@@ -135,7 +135,12 @@ fn plug() -> Plug {
             level: Some(1),
             owner: "nobody".into(),
             index: 0,
+            plug: 0,
         }],
+        inputs: Vec::new(),
+        open_taps: Vec::new(),
+        open_reads: None,
+        neighbours: Vec::new(),
         modules: Vec::new(),
         wires: Vec::new(),
         taps: vec![PlugTap {

@@ -4,7 +4,7 @@
 use std::path::{Path, PathBuf};
 
 use daemon::virtual_run::Manifest;
-use ipc::wiring::{Source, check};
+use ipc::wiring::{Directory, Source, check};
 use scenario::prefixes::{Prefix, Upper, Way, prefixes, table};
 use scenario::{kinds, suite};
 
@@ -26,7 +26,7 @@ fn tried(promised: &[&str]) -> Vec<Prefix> {
         source: source("wander.toml"),
         table: None,
     };
-    let wander = Upper::new(manifest, &creature, &kinds).expect("a layer");
+    let wander = Upper::new(manifest, &mut Directory::of(&creature, "allen"), &kinds).expect("a layer");
     let files = suite::find(&[allen("scenarios")]).expect("scenarios");
     let mut scenarios = suite::read_all(&files, &kinds).expect("sound files");
     for scenario in &mut scenarios {

@@ -12,8 +12,8 @@ use crate::paint::{self, Color};
 /// What to check, and how to tell.
 pub(crate) struct Wanted<'w> {
     pub(crate) files: &'w [PathBuf],
-    /// The creature file that manifests are checked against.
-    pub(crate) host: Option<&'w Path>,
+    /// The creature file that manifests are checked against, and manifests of layers that have joined it before.
+    pub(crate) hosts: &'w [PathBuf],
     /// Whether every file is a manifest.
     pub(crate) manifests: bool,
     pub(crate) color: Color,
@@ -114,9 +114,16 @@ fn read(path: &Path) -> Result<Source, Trouble> {
 /// The file at `path`: a creature file, or a manifest together with the creature it wants to join.
 fn given(path: &Path, wanted: &Wanted<'_>) -> Result<Given, Trouble> {
     let source = read(path)?;
-    let host = match wanted.host {
-        Some(host) => Some(directory(read(host)?)?),
-        None => match host_beside(path, &source) {
+    let host = match wanted.hosts {
+        [host, joined @ ..] => {
+            let mut directory = directory(read(host)?)?;
+            for path in joined {
+                let manifest = checker::manifest(&read(path)?, &kinds(), &directory);
+                directory.join_checked(&manifest.map_err(Trouble::Rejected)?);
+            }
+            Some(directory)
+        }
+        [] => match host_beside(path, &source) {
             Some(host) => Some(directory(read(&host)?)?),
             None if wanted.manifests => {
                 let help = "name the creature file: subsumectl check --in CREATURE.toml FILE...";

@@ -99,6 +99,16 @@ pub(crate) fn status(creature: &str, as_json: bool) -> Done {
     if !holding.is_empty() {
         println!("\ntaps that hold:\n{}", holding.join("\n"));
     }
+    let waiting = list(&status, "taps").filter(|t| t["joined"] == false);
+    let waiting: Vec<String> = waiting
+        .map(|t| {
+            let at = t["at"].as_str().unwrap_or("its layer");
+            format!("  {} > {} waits for {at}", text(&t["from"]), text(&t["to"]))
+        })
+        .collect();
+    if !waiting.is_empty() {
+        println!("\ntaps that wait:\n{}", waiting.join("\n"));
+    }
     Ok(())
 }
 

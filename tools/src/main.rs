@@ -135,9 +135,10 @@ enum Command {
         /// Creature files, and manifests of layers beside the file of their creature
         #[arg(required = true)]
         files: Vec<PathBuf>,
-        /// Checks the files as manifests of layers that join this creature
+        /// Checks the files as manifests of layers that join this creature; again, with a manifest, for a layer that
+        /// has joined it before them
         #[arg(long = "in", value_name = "CREATURE.toml")]
-        host: Option<PathBuf>,
+        hosts: Vec<PathBuf>,
         /// Takes every file for a manifest
         #[arg(long)]
         manifest: bool,
@@ -306,13 +307,13 @@ fn main() -> ExitCode {
         Command::Reset => live::order(creature, json, Request::Reset, "reset"),
         Command::Check {
             files,
-            host,
+            hosts,
             manifest,
             color,
         } => {
             return check::check(&check::Wanted {
                 files: &files,
-                host: host.as_deref(),
+                hosts: &hosts,
                 manifests: manifest,
                 color,
                 json,

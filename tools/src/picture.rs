@@ -113,13 +113,7 @@ fn model(sources: &[Source]) -> (Model, Vec<Rejected>) {
 /// What a creature shows to the next layer when others have joined.
 fn directory(host: &Creature, joined: &[Creature]) -> Directory {
     let mut all = Directory::of(host, "");
-    for layer in joined {
-        let more = Directory::of(layer, "");
-        all.layers.extend(more.layers);
-        all.outputs.extend(more.outputs);
-        all.inputs.extend(more.inputs);
-        all.open_taps.extend(more.open_taps);
-    }
+    joined.iter().for_each(|layer| all.join_checked(layer));
     all
 }
 

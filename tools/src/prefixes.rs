@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use daemon::virtual_run::Manifest;
-use ipc::wiring::{Rejected, Source, check};
+use ipc::wiring::{Directory, Rejected, Source, check};
 use scenario::kinds;
 use scenario::prefixes::{Prefix, Upper, json, prefixes as try_all, table};
 
@@ -32,13 +32,14 @@ pub(crate) fn prefixes(
     let told = |rejected: Rejected| refuse(&[rejected], as_json);
     let checked = || -> Result<_, ExitCode> {
         let creature = check::creature(&load(creature)?, &kinds).map_err(told)?;
+        let mut host = Directory::of(&creature, &creature.name);
         let mut uppers = Vec::new();
         for layer in layers {
             let manifest = Manifest {
                 source: load(layer)?,
                 table: None,
             };
-            uppers.push(Upper::new(manifest, &creature, &kinds).map_err(told)?);
+            uppers.push(Upper::new(manifest, &mut host, &kinds).map_err(told)?);
         }
         let mut scenarios = read(scenarios, &kinds, as_json)?;
         scenarios.retain(|s| s.creature.name == creature.name);

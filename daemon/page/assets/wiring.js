@@ -130,7 +130,9 @@ function showTap(group, tap) {
   say(group.querySelector(".constant"), text);
   const verb = tap.kind === "inhibit" ? "inhibits" : "suppresses";
   const counts = `; delivered ${number(tap.delivered)}, rejected ${number(tap.rejected)}`;
-  const doing = holds ? `, holds${left === null ? "" : `, ${text} left`}` : ", does not hold";
+  const idle = tap.joined === false ? `, waits for layer ${tap.at}` : ", does not hold";
+  const doing = holds ? `, holds${left === null ? "" : `, ${text} left`}` : idle;
+  group.dataset.waits = String(tap.joined === false);
   const said = `${tap.from} ${verb} ${tap.to} for ${group.dataset.constant}${doing}${counts}`;
   say(group.querySelector("title"), said);
   group.setAttribute("aria-label", said);

@@ -345,6 +345,20 @@ impl Recording {
         )
     }
 
+    /// The attached layer that has the module of `port` at the moment `at`: its newest coming, and whether it has
+    /// gone again. None if no attached layer ever had it.
+    pub fn owner_of(&self, port: &str, at: Time) -> Option<(&Plugged, bool)> {
+        let (module, _) = port.split_once('.')?;
+        let has = |p: &Plugged| p.plug.modules.iter().any(|m| m.name == module);
+        let mut plugs = self.plugs.iter().rev();
+        let (_, owner) = plugs.find(|(time, p)| *time <= at && has(p))?;
+        let gone = self
+            .unplugs
+            .iter()
+            .any(|(time, p)| *p == owner.number && *time <= at);
+        Some((owner, gone))
+    }
+
     /// Message `number` of a wire.
     pub fn message(&self, plug: u32, wire: &str, number: u64) -> Option<&Message> {
         let messages = self.wires.get(&(plug, wire.to_string()))?;

@@ -32,6 +32,8 @@ pub struct Ring {
 struct Past {
     sources: Vec<SourceBase>,
     plugs: BTreeMap<u32, (Time, Arc<Plugged>)>,
+    /// The newest message of each wire of an attached layer: nobody else remembers it.
+    wires: BTreeMap<(u32, usize), Item>,
 }
 
 /// What a source held when its oldest beat in the ring began.
@@ -73,6 +75,7 @@ impl Ring {
             plugs: plugs
                 .map(|p| (p.number, (Time(manifest.began_ns), Arc::new(p.clone()))))
                 .collect(),
+            wires: BTreeMap::new(),
         };
         Ring {
             span,
@@ -136,6 +139,7 @@ impl Past {
         let plugs = self.plugs.values();
         plugs
             .map(|(time, plug)| Item::Plugged(*time, plug.clone()))
+            .chain(self.wires.values().cloned())
             .chain(bases)
     }
 
@@ -147,6 +151,10 @@ impl Past {
             }
             Item::Unplugged(_, number) => {
                 self.plugs.remove(number);
+                self.wires.retain(|(plug, _), _| plug != number);
+            }
+            Item::Wire { plug, index, .. } => {
+                self.wires.insert((*plug, *index), item.clone());
             }
             _ => {}
         }

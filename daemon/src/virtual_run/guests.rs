@@ -8,17 +8,18 @@ use std::sync::Arc;
 use afsm::Kinds;
 use afsm::assemble::{FiledTap, Wires, assemble};
 use afsm::layer::{Command, Hand};
+use afsm::places::Places;
 use afsm::process::plug_request;
 use ipc::clock::{Span, Time};
-use ipc::control::Plug;
+use ipc::control::{Plug, PlugTap};
 use ipc::wire::{Page, Reader, TapGauge};
 use ipc::wiring::creature::{Creature, How, PortName};
-use ipc::wiring::directory::{Directory, Listed, output_ports};
+use ipc::wiring::directory::{Directory, output_ports};
 use ipc::wiring::{Catalog, Rejected, Source, check};
 
 use crate::executor::gauge::BeatGauge;
 use crate::machine::{Net, Station};
-use crate::policy::{Place, Policy};
+use crate::policy::{Place, Policy, has_port, settled, tap_end};
 
 /// A manifest as it stands in a file of its own, or in a table of another document.
 #[derive(Clone, Debug)]
@@ -57,8 +58,12 @@ pub struct Guest {
     pub(super) due: Option<Time>,
     /// Numbers of its wires in the log.
     pub(super) logged: Vec<usize>,
-    /// Nobody taps a guest from outside; the hand is kept so that its layer's channel stays open.
-    pub(super) _hand: Hand,
+    /// How other guests reach into it.
+    pub(super) hand: Hand,
+    /// Where its ports are.
+    places: Places,
+    /// Where its own taps are counted, in the order of what it asked for.
+    gauges: Vec<Arc<TapGauge>>,
 }
 
 /// A tap as a run knows it, also after its layer has gone.
@@ -68,8 +73,19 @@ pub(super) struct KnownTap {
     pub(super) from: String,
     pub(super) to: String,
     pub(super) gauge: Arc<TapGauge>,
-    /// Where it is joined; `None` for the n-th command of the body.
-    pub(super) place: Result<Place, usize>,
+    /// Where it is joined.
+    pub(super) place: Spot,
+}
+
+/// Where a tap is joined.
+#[derive(Clone, Debug)]
+pub(super) enum Spot {
+    /// At a port of the creature.
+    Own(Place),
+    /// At the n-th register or outlet of the guest called so, whenever it is here.
+    Guest(String, usize),
+    /// At the n-th command of the body.
+    Body(usize),
 }
 
 /// What a newcomer reads: its own wires, the creature's, and those of the other guests.
@@ -121,7 +137,7 @@ impl Guests {
                 from,
                 to,
                 gauge: filed.gauge.clone(),
-                place: place.ok_or_else(command),
+                place: place.map_or_else(|| Spot::Body(command()), Spot::Own),
             }
         };
         let taps = taps.iter().map(known).collect();
@@ -142,7 +158,7 @@ impl Guests {
         creature: (&Creature, &Arc<Page>),
         hands: &mut [Hand],
     ) -> Result<usize, Vec<String>> {
-        let directory = self.policy.directory_with(self.here.iter().map(|g| &g.plug));
+        let directory = self.policy.directory_with(self.present());
         let checked = manifest.check(&self.kinds, &directory);
         let checked = checked.map_err(|rejected| {
             let told = rejected.located().into_iter();
@@ -153,16 +169,12 @@ impl Guests {
             return Err(vec!["a layer process runs one [[layer]]".into()]);
         };
         let owner = format!("{}/{}", creature.0.name, layer.name);
-        let outputs: Vec<Listed> = Directory::of(&checked, &owner).outputs;
-        let plug = plug_request(layer, &owner, outputs, 0);
-        let reasons = self
-            .policy
-            .reasons_against(&plug, self.here.iter().map(|g| &g.plug));
+        let plug = settled(plug_request(&checked, layer, &owner, &directory, 0));
+        let reasons = self.policy.reasons_against(&plug, self.present());
         if !reasons.is_empty() {
             return Err(reasons);
         }
         self.last += 1;
-        let number = self.last;
         let page = Page::in_memory(output_ports(&checked).count());
         let neighbours = Neighbours {
             own: Net::new(&checked, &page),
@@ -170,37 +182,92 @@ impl Guests {
             guests: &self.here,
         };
         let (running, hand) = assemble(layer, &self.kinds, &page, 0, &neighbours, &[], creature.0.seed);
-        for tap in &plug.taps {
-            let joining = self.policy.join(number, &plug, tap, &page, Arc::default());
-            let taken = hands[joining.station].commands.push(joining.command);
-            assert!(taken.is_ok(), "every command is taken up at once");
-            let place = match tap.how {
-                How::Suppress => self.policy.input(&tap.to),
-                How::Inhibit => self.policy.output(&tap.to),
-            };
-            self.taps.push(KnownTap {
-                how: tap.how,
-                from: tap.from.clone(),
-                to: tap.to.clone(),
-                gauge: joining.gauge,
-                place: Ok(place.expect("checked")),
-            });
-        }
         let station = Station {
             spec: layer.clone(),
             running,
             gauge: Arc::new(BeatGauge::default()),
         };
-        self.here.push(Guest {
-            number,
-            plug,
+        let guest = Guest {
+            number: self.last,
+            places: Places::of(layer),
+            gauges: plug.taps.iter().map(|_| Arc::default()).collect(),
             due: Some(now + station.spec.phase),
+            plug,
             station,
             page,
             logged: Vec::new(),
-            _hand: hand,
-        });
+            hand,
+        };
+        self.welcome(guest, hands);
         Ok(self.here.len() - 1)
+    }
+
+    /// The layers that are here, as the policy asks for them.
+    fn present(&self) -> impl Iterator<Item = (u32, &Plug)> {
+        self.here.iter().map(|g| (g.number, &g.plug))
+    }
+
+    /// Joins the taps of a newcomer, and those of others that waited for it; whoever reads its wires is connected
+    /// to them.
+    fn welcome(&mut self, newcomer: Guest, hands: &mut [Hand]) {
+        for (tap, gauge) in newcomer.plug.taps.iter().zip(&newcomer.gauges) {
+            let end = tap_end(
+                newcomer.number,
+                &newcomer.plug,
+                tap,
+                &newcomer.page,
+                gauge.clone(),
+            );
+            let place = match self.policy.place(tap.how, &tap.to) {
+                Some((station, port)) => {
+                    give(&mut hands[station], Command::join(tap.how, port, end));
+                    Spot::Own((station, port))
+                }
+                None => {
+                    let owner = self
+                        .here
+                        .iter_mut()
+                        .find(|g| has_port(&g.plug, tap))
+                        .expect("checked");
+                    let port = owner.places.tapped(tap.how, &tap.to).expect("checked");
+                    give(&mut owner.hand, Command::join(tap.how, port, end));
+                    Spot::Guest(owner.plug.layer.clone(), port)
+                }
+            };
+            self.taps.push(KnownTap {
+                how: tap.how,
+                from: tap.from.clone(),
+                to: tap.to.clone(),
+                gauge: gauge.clone(),
+                place,
+            });
+        }
+        self.here.push(newcomer);
+        let Some((newcomer, others)) = self.here.split_last_mut() else {
+            return;
+        };
+        for other in others {
+            let present = (newcomer.number, &newcomer.plug);
+            let waiting = |tap: &PlugTap| {
+                has_port(&newcomer.plug, tap)
+                    && self
+                        .policy
+                        .reasons_against_rejoining(&other.plug, tap, present)
+                        .is_empty()
+            };
+            for (tap, gauge) in other.plug.taps.iter().zip(&other.gauges) {
+                if waiting(tap) {
+                    let end = tap_end(other.number, &other.plug, tap, &other.page, gauge.clone());
+                    let port = newcomer.places.tapped(tap.how, &tap.to).expect("it has the port");
+                    give(&mut newcomer.hand, Command::join(tap.how, port, end));
+                }
+            }
+            for (from, to) in &other.plug.wires {
+                if let (Some(wire), Some(input)) = (newcomer.reader(from), other.places.input(to)) {
+                    give(&mut other.hand, Command::Connect(input, wire));
+                }
+            }
+        }
     }
 
     /// Lets the layer called `name` go: nothing is written any more, its taps are told to go. Says whether it
@@ -210,12 +277,19 @@ impl Guests {
             return false;
         };
         let guest = self.here.remove(index);
-        for hand in hands {
-            let taken = hand.commands.push(Command::Release(guest.number));
-            assert!(taken.is_ok(), "every command is taken up at once");
+        let others = self.here.iter_mut().map(|g| &mut g.hand);
+        for hand in hands.iter_mut().chain(others) {
+            give(hand, Command::Release(guest.number));
         }
         true
     }
+}
+
+fn give(hand: &mut Hand, command: Command) {
+    assert!(
+        hand.commands.push(command).is_ok(),
+        "every command is taken up at once"
+    );
 }
 
 /// The first beat of the grid through `first` that is not before `now`.

@@ -256,8 +256,9 @@ impl VirtualRun {
                 }
             }
             if joining(stimulus) {
-                let stations = &mut self.machine.stations;
-                stations.iter_mut().for_each(|s| s.running.take_up());
+                let guests = self.guests.here.iter_mut().map(|g| &mut g.station);
+                let stations = self.machine.stations.iter_mut().chain(guests);
+                stations.for_each(|s| s.running.take_up());
                 self.set_order();
             }
         }

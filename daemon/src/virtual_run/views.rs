@@ -2,11 +2,13 @@
 //!
 //! Must never change what the creature does: looking takes in what was written, and nothing else.
 
+use afsm::layer::RunningLayer;
 use ipc::clock::Time;
 use ipc::tap::Window;
 use ipc::wire::{Register, TapCounts};
 use ipc::wiring::creature::How;
 
+use super::guests::Spot;
 use super::{Log, Message, VirtualRun};
 
 /// A tap as it stands.
@@ -104,17 +106,19 @@ impl VirtualRun {
         let taps = self.guests.taps.iter().filter(|t| t.from == from && t.to == to);
         let mut view = None;
         for tap in taps {
-            let window = match tap.place {
-                Ok((station, port)) => {
-                    let running = &self.machine.stations[station].running;
-                    match tap.how {
-                        How::Suppress => running.register(port).window_of(&tap.gauge),
-                        How::Inhibit => running.outlet(port).window_of(&tap.gauge),
-                    }
+            let at = |running: &RunningLayer, port: usize| match tap.how {
+                How::Suppress => running.register(port).window_of(&tap.gauge),
+                How::Inhibit => running.outlet(port).window_of(&tap.gauge),
+            };
+            let window = match &tap.place {
+                Spot::Own((station, port)) => at(&self.machine.stations[*station].running, *port),
+                Spot::Guest(layer, port) => {
+                    let owner = self.guests.here.iter().find(|g| g.plug.layer == *layer);
+                    owner.and_then(|g| at(&g.station.running, *port))
                 }
-                Err(input) => {
+                Spot::Body(input) => {
                     let body = self.machine.body.as_ref();
-                    let register = body.and_then(|b| b.motor.register(input));
+                    let register = body.and_then(|b| b.motor.register(*input));
                     register.and_then(|r| r.window_of(&tap.gauge))
                 }
             };

@@ -42,7 +42,8 @@ impl VirtualRun {
             }
         }
         self.act(&written);
-        for hand in &mut self.machine.hands {
+        let guests = self.guests.here.iter_mut().map(|g| &mut g.hand);
+        for hand in self.machine.hands.iter_mut().chain(guests) {
             while hand.returned.pop().is_ok() {}
         }
     }

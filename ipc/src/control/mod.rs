@@ -1,7 +1,13 @@
 //! The control channel: how layer processes and tools speak to a running daemon.
 //!
 //! One JSON document a line over a Unix socket, each at most [`LINE_MAX`] bytes; the caller speaks first and
-//! every request has one reply. A layer stays attached for as long as its connection is open.
+//! every request has one reply, but for those that say that they have none. A layer stays attached for as long
+//! as its connection is open, and only it is spoken to unasked, in [`Order`]s:
+//!
+//! ```text
+//!   layer:   hello ─► directory ─► plug ──► (beats) ─────────────► obeyed 1 ─► counts … ─► unplug
+//!   daemon:     welcome   directory   plugged ─► order 1: join a tap ─┘
+//! ```
 //!
 //! Must never carry wire messages: those go through shared memory.
 
@@ -11,197 +17,26 @@ use std::os::unix::net::UnixStream;
 use serde::{Deserialize, Serialize};
 
 use crate::clock::{self, Span, Time};
-use crate::wire::LAYOUT;
-use crate::wire::iceoryx::ICEORYX2;
-use crate::wiring::creature::How;
-use crate::wiring::directory::{Directory, Listed};
 
 mod call;
+mod document;
 mod peer;
 mod place;
 
 pub use call::{CallError, call, running};
+pub use document::{Event, JoinTap, Order, Plug, PlugModule, PlugTap, REFUSAL_MAX, Reply, Request, Versions};
 pub use peer::Peer;
 pub(crate) use place::socket_in_run_dir;
 pub use place::{run_dir, socket_path};
 
 /// Version of the control protocol.
-pub const PROTOCOL: u32 = 1;
+pub const PROTOCOL: u32 = 2;
 
 /// Longest line: the directory of a creature of 1,000 modules takes about 400 KiB.
 pub const LINE_MAX: usize = 4 << 20;
 
 /// Longest line that a daemon takes: the manifest of a layer of 500 modules takes about 200 KiB.
 pub const REQUEST_MAX: usize = 256 << 10;
-
-/// What must be equal at both ends.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Versions {
-    /// Version of the control protocol.
-    pub protocol: u32,
-    /// Version of the wire layout.
-    pub layout: u32,
-    /// Version of iceoryx2.
-    pub iceoryx2: String,
-}
-
-impl Versions {
-    /// Those of this program.
-    pub fn ours() -> Versions {
-        Versions {
-            protocol: PROTOCOL,
-            layout: LAYOUT,
-            iceoryx2: ICEORYX2.into(),
-        }
-    }
-}
-
-impl std::fmt::Display for Versions {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(
-            f,
-            "protocol {}, wire layout {}, iceoryx2 {}",
-            self.protocol, self.layout, self.iceoryx2
-        )
-    }
-}
-
-/// What a caller may ask.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case", tag = "ask")]
-pub enum Request {
-    /// First on every connection.
-    Hello {
-        /// The caller's versions.
-        versions: Versions,
-        /// The caller's name.
-        program: String,
-    },
-    /// The state of everything.
-    Status,
-    /// The ports there are.
-    Directory,
-    /// Events after the `after`-th.
-    Events {
-        /// Number of the last event already seen; 0 for all.
-        after: u64,
-    },
-    /// Emergency stop; holds until reset.
-    Halt,
-    /// Ends an emergency stop.
-    Reset,
-    /// Records what happens. The answer is [`Reply::Recording`], followed by the bytes of an MCAP file until the
-    /// daemon closes the connection; the caller ends the recording by closing its own direction.
-    Record {
-        /// Whether to begin with what the flight recorder holds.
-        past: bool,
-        /// How long to record, in seconds; 0 for what is there already, none until the caller ends it.
-        seconds: Option<f64>,
-        /// Keep only the newest stretch, until the body halts.
-        ring: Option<Span>,
-    },
-    /// Joins a layer for as long as this connection lasts.
-    Plug(Plug),
-    /// The joined layer leaves of its own will; no answer is waited for.
-    Unplug,
-}
-
-/// A layer that wants to join.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Plug {
-    /// The layer's name.
-    pub layer: String,
-    /// Its level.
-    pub level: u8,
-    /// Time between its beats.
-    pub period: Span,
-    /// Its process.
-    pub pid: u32,
-    /// Under what name it shares its own wires.
-    pub owner: String,
-    /// Its own output ports, in the order of its page.
-    pub outputs: Vec<Listed>,
-    /// Its modules, for pictures.
-    pub modules: Vec<PlugModule>,
-    /// Wires into its modules, `from` and `to`, for pictures.
-    pub wires: Vec<(String, String)>,
-    /// Its taps.
-    pub taps: Vec<PlugTap>,
-}
-
-/// A module of a layer that wants to join.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct PlugModule {
-    /// Its name.
-    pub name: String,
-    /// Its kind.
-    pub kind: String,
-    /// Names of its inputs.
-    pub inputs: Vec<String>,
-    /// Names of its outputs.
-    pub outputs: Vec<String>,
-}
-
-/// A tap of a layer that wants to join.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct PlugTap {
-    /// Which way it acts.
-    pub how: How,
-    /// The newcomer's output port.
-    pub from: String,
-    /// The creature's port.
-    pub to: String,
-    /// Its time constant.
-    pub time_constant: Span,
-}
-
-/// What the daemon answers.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case", tag = "answer", content = "with")]
-pub enum Reply {
-    /// The caller may go on.
-    Welcome {
-        /// The daemon's versions.
-        versions: Versions,
-        /// The creature's name.
-        creature: String,
-    },
-    /// The ports there are.
-    Directory(Directory),
-    /// The state of everything; see the daemon's `status`.
-    Status(serde_json::Value),
-    /// Events, oldest first.
-    Events(Vec<Event>),
-    /// A recording follows, see [`Request::Record`].
-    Recording,
-    /// Done.
-    Done,
-    /// The layer is attached.
-    Plugged {
-        /// Its number.
-        plug: u32,
-    },
-    /// Not done, and why.
-    Refused {
-        /// The reasons.
-        reasons: Vec<String>,
-    },
-}
-
-/// Something that happened.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Event {
-    /// Its number, counted from 1.
-    pub number: u64,
-    /// Seconds since the daemon started.
-    pub time_s: f64,
-    /// What kind of thing: `layer`, `halt`, `overrun`, `daemon`.
-    pub kind: String,
-    /// The layer it is about, if it is about one.
-    pub layer: Option<String>,
-    /// What happened, in a sentence.
-    pub text: String,
-}
 
 /// One end of a control connection.
 #[derive(Debug)]

@@ -82,6 +82,14 @@ impl TapGauge {
         self.number
     }
 
+    /// Takes over what another process counted at the tap. Counts never run back, whatever it says.
+    pub fn take_over(&self, counts: TapCounts) {
+        // Relaxed: numbers to look at; nothing hangs on their order.
+        self.delivered.fetch_max(counts.delivered, Ordering::Relaxed);
+        self.rejected.fetch_max(counts.rejected, Ordering::Relaxed);
+        self.faults.fetch_max(counts.faults, Ordering::Relaxed);
+    }
+
     /// What was counted so far.
     pub fn counts(&self) -> TapCounts {
         // Relaxed: numbers to look at; nothing hangs on their order.
@@ -125,7 +133,7 @@ pub struct TapLook<'t> {
 }
 
 /// What was counted at one tap.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct TapCounts {
     /// Messages of the tap that took effect.
     pub delivered: u64,
@@ -133,6 +141,19 @@ pub struct TapCounts {
     pub rejected: u64,
     /// Messages of the tap that were no message: not a number, out of range, or stamped in the future.
     pub faults: u64,
+}
+
+impl std::ops::Add for TapCounts {
+    type Output = TapCounts;
+
+    /// Both together; at its largest it stays.
+    fn add(self, other: TapCounts) -> TapCounts {
+        TapCounts {
+            delivered: self.delivered.saturating_add(other.delivered),
+            rejected: self.rejected.saturating_add(other.rejected),
+            faults: self.faults.saturating_add(other.faults),
+        }
+    }
 }
 
 /// A tap with what was last seen of it. What a beat touches of a silent one comes first and lies together.

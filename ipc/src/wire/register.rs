@@ -103,6 +103,17 @@ impl Register {
         }
     }
 
+    /// Connects the port to another wire from now on, and hands back the one before: whoever wrote that is gone,
+    /// and has come back with new ones. The message held stays until a newer one is delivered. A wire that carries
+    /// something else is handed back itself.
+    pub fn connect(&mut self, wire: Reader) -> Option<Reader> {
+        if wire.kind() != self.limits.kind {
+            return Some(wire);
+        }
+        self.seen = 0;
+        self.wire.replace(wire)
+    }
+
     /// Joins a suppressor: after those of lower or equal level, before those of higher level. Does not
     /// allocate if the tap brings [`Room::full`](super::Room::full). `Err` gives the tap back when
     /// [`TAPS_MAX`](super::TAPS_MAX) stand there already.

@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::creature::{BODY, Creature, PortName, Reads};
 use crate::clock::Span;
+use crate::control::Plug;
 use crate::message::Kind;
 
 /// A port of the creature.
@@ -25,6 +26,9 @@ pub struct Listed {
     /// For outputs: which wire of that page.
     #[serde(default)]
     pub index: usize,
+    /// For outputs of an attached layer: the number of its coming; 0 for the daemon's own.
+    #[serde(default)]
+    pub plug: u32,
 }
 
 /// What a running creature shows.
@@ -52,7 +56,7 @@ pub struct Directory {
     /// Most messages a second of a tap; none for no limit.
     #[serde(default)]
     pub messages_max: Option<u32>,
-    /// Outputs of the creature whose wires may be read; none for all.
+    /// Outputs whose wires may be read; none for all.
     #[serde(default)]
     pub open_reads: Option<Vec<String>>,
 }
@@ -68,6 +72,7 @@ impl Directory {
             level,
             owner: String::new(),
             index: 0,
+            plug: 0,
         };
         let mut outputs: Vec<Listed> = output_ports(creature).map(listed).collect();
         for (index, output) in outputs.iter_mut().enumerate() {
@@ -90,6 +95,50 @@ impl Directory {
                 Reads::These(ports) => Some(ports.iter().map(PortName::to_string).collect()),
             },
         }
+    }
+
+    /// Adds an attached layer: it came as number `plug`.
+    pub fn join(&mut self, number: u32, plug: &Plug) {
+        self.layers.push(plug.layer.clone());
+        let first = self.outputs.len();
+        self.open(
+            &plug.outputs,
+            &plug.inputs,
+            &plug.open_taps,
+            plug.open_reads.as_deref(),
+        );
+        for output in &mut self.outputs[first..] {
+            output.plug = number;
+        }
+    }
+
+    /// Adds the layer of a manifest that was checked against this directory, as though it had attached.
+    pub fn join_checked(&mut self, manifest: &Creature) {
+        let name = manifest.layers.first().map_or("", |l| &l.name);
+        let more = Directory::of(manifest, &format!("{}/{name}", self.creature));
+        self.layers.extend(more.layers);
+        self.open(
+            &more.outputs,
+            &more.inputs,
+            &more.open_taps,
+            more.open_reads.as_deref(),
+        );
+    }
+
+    fn open(&mut self, outputs: &[Listed], inputs: &[Listed], taps: &[String], reads: Option<&[String]>) {
+        // Where only some wires are open, those of the others have to be named as well.
+        if reads.is_some() && self.open_reads.is_none() {
+            self.open_reads = Some(self.outputs.iter().map(|o| o.name.clone()).collect());
+        }
+        if let Some(open) = &mut self.open_reads {
+            match reads {
+                Some(ports) => open.extend_from_slice(ports),
+                None => open.extend(outputs.iter().map(|o| o.name.clone())),
+            }
+        }
+        self.open_taps.extend_from_slice(taps);
+        self.inputs.extend_from_slice(inputs);
+        self.outputs.extend_from_slice(outputs);
     }
 
     /// Whether a module of that name is there.

@@ -110,16 +110,12 @@ pub fn breaches(host: &Directory, claim: &Claim<'_>) -> Vec<Breach> {
     breaches
 }
 
-/// Whether outsiders may read the wire of an output. Layers from outside read each other's as they like:
-/// their pages are named `<creature>/<layer>`.
+/// Whether outsiders may read the wire of an output. What is not there at all is another fault.
 fn readable(host: &Directory, read: &str) -> bool {
     let Some(open) = &host.open_reads else {
         return true;
     };
-    let foreign = |l: &super::directory::Listed| l.name == read && l.owner.contains('/');
-    open.iter().any(|o| o == read)
-        || host.outputs.iter().any(foreign)
-        || !host.outputs.iter().any(|l| l.name == read)
+    open.iter().any(|o| o == read) || !host.outputs.iter().any(|l| l.name == read)
 }
 
 fn tap_breaches(

@@ -12,7 +12,7 @@ use std::ops::Range;
 
 use ipc::clock::Time;
 use ipc::message::Words;
-use ipc::wire::{Outlet, Register, TapEnd};
+use ipc::wire::{Outlet, Reader, Register, TapEnd};
 use ipc::wiring::creature::How;
 use rtrb::{Consumer, Producer};
 
@@ -20,7 +20,7 @@ use crate::kind::ModuleKind;
 use crate::module::{Beat, Module};
 use crate::trace::Tracer;
 
-/// A change to a running layer's taps, made by a thread that is not real-time.
+/// A change to what reaches a running layer, made by a thread that is not real-time.
 #[derive(Debug)]
 pub enum Command {
     /// Joins a suppressor to the layer's n-th input.
@@ -29,9 +29,31 @@ pub enum Command {
     Inhibit(usize, TapEnd),
     /// Tells all taps of a plugged layer to go.
     Release(ipc::wire::Plug),
+    /// Connects the layer's n-th input to another wire.
+    Connect(usize, Reader),
 }
 
-/// Most commands waiting for a layer, and taps waiting to be taken back: those of a newcomer that taps
+impl Command {
+    /// Joins `end` to the layer's `port`-th input or output.
+    pub fn join(how: How, port: usize, end: TapEnd) -> Command {
+        match how {
+            How::Suppress => Command::Suppress(port, end),
+            How::Inhibit => Command::Inhibit(port, end),
+        }
+    }
+}
+
+/// What a layer has no use for any more: it may hold the last end of a mapping, so the layer's own thread must not
+/// drop it.
+#[derive(Debug)]
+pub enum Returned {
+    /// A tap.
+    Tap(TapEnd),
+    /// The wire that an input was connected to.
+    Wire(Reader),
+}
+
+/// Most commands waiting for a layer, and things waiting to be taken back: those of a newcomer that taps
 /// every port it may.
 pub const COMMANDS_MAX: usize = 256;
 
@@ -40,8 +62,8 @@ pub const COMMANDS_MAX: usize = 256;
 pub struct Hand {
     /// Commands to the layer, taken up at its next beat.
     pub commands: Producer<Command>,
-    /// Taps that the layer has let go, to be dropped here.
-    pub returned: Consumer<TapEnd>,
+    /// What the layer has let go, to be dropped here.
+    pub returned: Consumer<Returned>,
 }
 
 /// A module as it stands in a layer.
@@ -61,7 +83,7 @@ pub struct RunningLayer {
     registers: Vec<Register>,
     outlets: Vec<Outlet>,
     commands: Consumer<Command>,
-    returned: Producer<TapEnd>,
+    returned: Producer<Returned>,
     tracer: Option<Tracer>,
 }
 
@@ -303,9 +325,20 @@ impl RunningLayer {
                 self.outlets.iter_mut().for_each(|o| o.release(plug));
                 Ok(())
             }
+            Command::Connect(input, wire) => return self.connect(input, wire),
         };
         if let Err(end) = refused {
             give_back(&mut self.returned, end);
+        }
+    }
+
+    fn connect(&mut self, input: usize, wire: Reader) {
+        let before = match self.registers.get_mut(input) {
+            Some(register) => register.connect(wire),
+            None => Some(wire),
+        };
+        if let Some(wire) = before {
+            hand_over(&mut self.returned, Returned::Wire(wire));
         }
     }
 
@@ -345,6 +378,8 @@ fn trace_command(tracer: &mut Tracer, command: &Command) {
         Command::Suppress(slot, end) => (slot, end, How::Suppress),
         Command::Inhibit(slot, end) => (slot, end, How::Inhibit),
         Command::Release(plug) => return tracer.released(*plug),
+        // Only a layer of a process of its own is connected anew, and nobody traces it.
+        Command::Connect(..) => return,
     };
     tracer.joined(
         *slot,
@@ -356,10 +391,15 @@ fn trace_command(tracer: &mut Tracer, command: &Command) {
     );
 }
 
-/// Hands a tap to the thread that may drop it. The ring has room for every tap there can be, so the tap is
-/// dropped here only if the other side is gone for good.
-fn give_back(returned: &mut Producer<TapEnd>, end: TapEnd) {
-    if let Err(rtrb::PushError::Full(end)) = returned.push(end) {
-        std::mem::forget(end);
+/// Hands a tap to the thread that may drop it.
+fn give_back(returned: &mut Producer<Returned>, end: TapEnd) {
+    hand_over(returned, Returned::Tap(end));
+}
+
+/// Hands what is let go to the thread that may drop it. The ring has room for everything there can be, so it is
+/// forgotten here only if the other side is gone for good.
+fn hand_over(returned: &mut Producer<Returned>, what: Returned) {
+    if let Err(rtrb::PushError::Full(what)) = returned.push(what) {
+        std::mem::forget(what);
     }
 }

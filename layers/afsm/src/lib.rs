@@ -10,6 +10,7 @@ pub mod assemble;
 pub mod kind;
 pub mod layer;
 pub mod module;
+pub mod places;
 pub mod port;
 pub mod process;
 pub mod random;

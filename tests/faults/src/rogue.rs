@@ -196,7 +196,12 @@ fn attach(owned: &OwnedPage, name: &str, owner: &str) -> Result<Connection, Stri
             level: Some(1),
             owner: owner.into(),
             index: 0,
+            plug: 0,
         }],
+        inputs: Vec::new(),
+        open_taps: Vec::new(),
+        open_reads: None,
+        neighbours: Vec::new(),
         modules: Vec::new(),
         wires: Vec::new(),
         taps: vec![PlugTap {

@@ -40,7 +40,8 @@ pub fn judge(scenario: &Scenario, outcome: &Outcome) -> Vec<Failure> {
         let expected = scenario
             .expectations
             .iter()
-            .any(|e| matches!(&e.what, What::Refused { layer, .. } if layer == name));
+            .any(|e| matches!(&e.what, What::Refused { layer, .. } if layer == name))
+            || scenario.strangers.contains(name);
         if !expected {
             failures.push(Failure {
                 line: 0,

@@ -37,6 +37,8 @@ pub struct Scenario {
     pub competence: bool,
     /// The layers that may join, by name.
     pub manifests: BTreeMap<String, Arc<Manifest>>,
+    /// Of those the ones that may also be refused, as what they tap may not be there: guests nobody counts on.
+    pub strangers: Vec<String>,
     /// What happens, in order of time.
     pub stimuli: Vec<(Span, Stimulus)>,
     /// What must come of it, in the order of the file.

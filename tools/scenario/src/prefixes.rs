@@ -21,7 +21,7 @@ use afsm::assemble::seed_of;
 use afsm::random::Random;
 use daemon::virtual_run::{Manifest, Stimulus};
 use ipc::clock::Span;
-use ipc::wiring::{Creature, Directory, Rejected};
+use ipc::wiring::{Directory, Rejected};
 
 use crate::plan::Scenario;
 use crate::run::How;
@@ -71,12 +71,13 @@ pub struct Prefix {
 }
 
 impl Upper {
-    /// The layer of `manifest`, checked against `creature`.
+    /// The layer of `manifest`, checked against `host`: what the creature shows, and the layers made before it.
     ///
     /// # Errors
     /// Every error in it.
-    pub fn new(manifest: Manifest, creature: &Creature, kinds: &Kinds) -> Result<Upper, Rejected> {
-        let checked = manifest.check(kinds, &Directory::of(creature, &creature.name))?;
+    pub fn new(manifest: Manifest, host: &mut Directory, kinds: &Kinds) -> Result<Upper, Rejected> {
+        let checked = manifest.check(kinds, host)?;
+        host.join_checked(&checked);
         let layer = checked.layers.first().expect("a checked manifest has a layer");
         Ok(Upper {
             name: layer.name.clone(),
@@ -151,15 +152,18 @@ fn strangers<'u>(scenario: &Scenario, uppers: &'u [Upper]) -> Vec<&'u Upper> {
     uppers.iter().filter(|u| !own(u)).collect()
 }
 
-/// The layers above the scenario's own level, up to `level`, run from the start.
+/// The layers above the scenario's own level, up to `level`, run from the start; the lowest comes first, as others
+/// may tap it.
 fn between(scenario: &mut Scenario, uppers: &[Upper], level: u8) {
-    for upper in strangers(scenario, uppers) {
-        if upper.level > scenario.level && upper.level <= level {
-            invite(scenario, upper);
-            let plug = Stimulus::Plug(upper.manifest.clone());
-            scenario.stimuli.insert(0, (Span::ZERO, plug));
-        }
+    let mut between = strangers(scenario, uppers);
+    between.retain(|upper| upper.level > scenario.level && upper.level <= level);
+    between.sort_by_key(|upper| upper.level);
+    let mut plugs = Vec::new();
+    for upper in between {
+        invite(scenario, upper);
+        plugs.push((Span::ZERO, Stimulus::Plug(upper.manifest.clone())));
     }
+    scenario.stimuli.splice(0..0, plugs);
 }
 
 fn invite(scenario: &mut Scenario, upper: &Upper) {
@@ -177,6 +181,8 @@ fn meddle(scenario: &mut Scenario, uppers: &[Upper], level: u8, seed: u64) -> (u
         }
         let (mut here, mut still) = (false, false);
         invite(scenario, upper);
+        // One that taps another of them is refused while that is away, and its going then is nothing.
+        scenario.strangers.push(upper.name.clone());
         for (moment, choice) in moments(scenario, &upper.name, seed) {
             let name = upper.name.clone();
             let stimulus = match (here, still) {

@@ -185,6 +185,7 @@ impl Reading<'_> {
             stimuli: events,
             expectations: items.into_iter().filter_map(|i| i.finish(end)).collect(),
             manifests,
+            strangers: Vec::new(),
         })
     }
 
@@ -349,7 +350,7 @@ impl Reading<'_> {
                 .error(name.at.clone(), "a manifest of more than one layer", help);
             return;
         };
-        host.outputs.extend(Directory::of(checked, "").outputs);
+        host.join_checked(checked);
         self.names.add(checked);
         self.names
             .manifests

@@ -49,6 +49,10 @@ pub fn holders(recording: &Recording, at: Time) -> Vec<Holder> {
     for (plug, tap) in recording.taps() {
         let newest = tap_newest(recording, plug, &tap, at);
         let running = newest.is_some_and(|stamp| stamp + tap.time_constant > at);
+        // A port of a layer that has gone is nobody's.
+        if recording.owner_of(&tap.to, at).is_some_and(|(_, gone)| gone) {
+            continue;
+        }
         if plug == 0 || running || came(plug) && !gone(plug) {
             let key = (tap.to.clone(), tap.how == How::Inhibit);
             ports.entry(key).or_default().push((plug, tap));
@@ -58,7 +62,12 @@ pub fn holders(recording: &Recording, at: Time) -> Vec<Holder> {
         // In series: by level, and within one by the order in which they were declared.
         taps.sort_by_key(|(_, t)| t.level);
         let seen = |(plug, tap): &(u32, Tap)| tap_seen(tap, tap_newest(recording, *plug, tap, at), at);
-        hold(recording, port, taps[0].1.how, taps.iter().map(seen).collect())
+        hold(
+            recording,
+            (port, taps[0].1.how),
+            taps.iter().map(seen).collect(),
+            at,
+        )
     };
     ports.into_iter().map(holder).collect()
 }
@@ -68,9 +77,18 @@ fn tap_newest(recording: &Recording, plug: u32, tap: &Tap, at: Time) -> Option<T
     before(messages, at).map(|m| m.stamp)
 }
 
-fn hold(recording: &Recording, port: String, kind: How, taps: Vec<TapSeen>) -> Holder {
+fn hold(recording: &Recording, (port, kind): (String, How), taps: Vec<TapSeen>, at: Time) -> Holder {
+    let attached = || {
+        let (owner, _) = recording.owner_of(&port, at)?;
+        let (from, _) = owner.plug.wires.iter().find(|(_, to)| *to == port)?;
+        Some(from.clone())
+    };
     let own = match kind {
-        How::Suppress => recording.manifest.wire_into(&port).map(str::to_string),
+        How::Suppress => recording
+            .manifest
+            .wire_into(&port)
+            .map(str::to_string)
+            .or_else(attached),
         How::Inhibit => Some(port.clone()),
     };
     // The last in the series that holds rejects what all before it bring.

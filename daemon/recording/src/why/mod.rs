@@ -243,23 +243,66 @@ impl Chain<'_> {
         let Some((_, plugged)) = self.recording.plugs.iter().find(|(_, p)| p.number == plug) else {
             return;
         };
-        for (from, to) in plugged.plug.wires.clone() {
-            if to.split_once('.').is_none_or(|(m, _)| m != module) {
-                continue;
+        let of_module = |port: &str| port.split_once('.').is_some_and(|(m, _)| m == module);
+        let wires = plugged.plug.wires.iter();
+        let mut ports: Vec<(String, Option<String>)> = wires
+            .filter(|(_, to)| of_module(to))
+            .map(|(from, to)| (to.clone(), Some(from.clone())))
+            .collect();
+        for (_, tap) in self.recording.taps() {
+            if tap.how == How::Suppress && of_module(&tap.to) && ports.iter().all(|(to, _)| *to != tap.to) {
+                ports.push((tap.to, None));
             }
-            // What came at the very moment was written by others in the same beat, or later.
-            let at = message.stamp - Span::nanos(1);
-            let held = newest(self.recording, &from, at)
-                .map(|(plug, m)| Box::new(self.link(plug, &from, &m, message.stamp, depth + 1)));
-            link.inputs.push(Input {
-                port: to,
-                arrived: false,
-                tap: None,
-                taps: Vec::new(),
-                rejected: 0,
-                newest_rejected: None,
-                held,
-            });
+        }
+        for (port, wire) in ports {
+            link.inputs
+                .push(self.foreign_input(port, wire.as_deref(), message.stamp, depth));
+        }
+    }
+
+    /// What the input `port` of a layer process held at `now`, by the stamps of the wire into it and of the taps on
+    /// it: the rules are the same there, only nobody wrote down which message was looked at.
+    fn foreign_input(&mut self, port: String, wire: Option<&str>, now: Time, depth: usize) -> Input {
+        let recording = self.recording;
+        // What came at the very moment was written by others in the same beat, or later.
+        let at = now - Span::nanos(1);
+        let own = wire.and_then(|wire| Some((wire.to_string(), newest(recording, wire, at)?)));
+        let on_port = |t: &(u32, Tap)| t.1.to == port && t.1.how == How::Suppress;
+        let mut taps: Vec<(u32, Tap)> = recording.taps().filter(on_port).collect();
+        taps.sort_by_key(|(_, tap)| tap.level);
+        let said = |(plug, tap): &(u32, Tap)| {
+            let messages = recording.wires.get(&(*plug, tap.from.clone()))?;
+            before(messages, at).copied()
+        };
+        let said: Vec<Option<Message>> = taps.iter().map(said).collect();
+        let windows = taps.iter().zip(&said).map(|((_, tap), said)| {
+            said.map(|m| Window {
+                stamp: m.stamp,
+                time_constant: tap.time_constant,
+            })
+        });
+        let holder = ipc::tap::holder(own.as_ref().map(|(_, (_, m))| m.stamp), windows);
+        let standing = taps.iter().zip(&said);
+        let standing = standing.map(|((_, tap), said)| tap_seen(tap, said.map(|m| m.stamp), at));
+        let standing: Vec<TapSeen> = standing.filter(|seen| seen.age_ms.is_some()).collect();
+        let (tap, held) = match (holder, own) {
+            (Some(0), Some((wire, (plug, m)))) => (None, Some((plug, wire, m))),
+            (Some(k), _) if k > 0 => {
+                let (plug, tap) = &taps[k - 1];
+                let held = said[k - 1].map(|m| (*plug, tap.from.clone(), m));
+                (Some(tap.layer.clone()), held)
+            }
+            _ => (None, None),
+        };
+        let held = held.map(|(plug, wire, m)| Box::new(self.link(plug, &wire, &m, now, depth + 1)));
+        Input {
+            port,
+            arrived: false,
+            tap,
+            taps: standing,
+            rejected: 0,
+            newest_rejected: None,
+            held,
         }
     }
 

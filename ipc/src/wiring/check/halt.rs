@@ -60,13 +60,21 @@ impl Checker<'_> {
 
     pub(super) fn outsiders(&mut self, raw: &RawOutsiders, reflexes: &[Placed<PortName>]) -> Outsiders {
         self.each_once("port", &raw.taps);
+        if self.host.is_some() {
+            self.opens_its_own(&raw.taps);
+            self.opens_its_own(raw.reads.as_deref().unwrap_or_default());
+        }
         for name in &raw.taps {
-            self.open_tap(name, reflexes);
+            if self.opens(name) {
+                self.open_tap(name, reflexes);
+            }
         }
         if let Some(reads) = &raw.reads {
             self.each_once("port", reads);
             for name in reads {
-                let _ = self.port(name, true);
+                if self.opens(name) {
+                    let _ = self.port(name, true);
+                }
             }
         }
         let whole = |given: &Option<Placed<u64>>, default: u64| given.as_ref().map_or(default, |g| g.value);

@@ -5,6 +5,7 @@
 use super::{Checker, Draft};
 use crate::wiring::creature::{BODY, How, PortName};
 use crate::wiring::directory::Directory;
+use crate::wiring::document::Placed;
 use crate::wiring::policy::{self, Claim, ClaimedTap, Part};
 use crate::wiring::read::Parts;
 use crate::wiring::rule::Rule;
@@ -14,7 +15,6 @@ impl Checker<'_> {
         let foreign = [
             ("[body]", parts.body.as_ref().map(|b| &b.at)),
             ("[halt]", parts.halt.as_ref().map(|h| &h.at)),
-            ("[outsiders]", parts.outsiders.as_ref().map(|o| &o.at)),
             ("[executor]", parts.executor.as_ref().map(|e| &e.at)),
             ("seed", parts.seed.as_ref().map(|s| &s.at)),
         ];
@@ -22,6 +22,13 @@ impl Checker<'_> {
             let Some(at) = at else { continue };
             let message = format!("a manifest has no {what}");
             let help = "that belongs to the creature's own file: remove it here";
+            self.findings
+                .refuse(Rule::NotInManifest, at.clone(), message, help);
+        }
+        for (key, at) in parts.outsiders.iter().flat_map(|o| &o.limits) {
+            let message = format!("the [outsiders] of a manifest have no {key:?}");
+            let help =
+                "whom it lets in and how much is for the creature's own file: expected \"read\" and \"tap\"";
             self.findings
                 .refuse(Rule::NotInManifest, at.clone(), message, help);
         }
@@ -38,6 +45,24 @@ impl Checker<'_> {
                 self.findings
                     .refuse(Rule::NotInManifest, vital.at.clone(), message, help);
             }
+        }
+    }
+
+    /// Whether it is for this file to open a port: a manifest opens those of its own modules.
+    pub(super) fn opens(&self, name: &Placed<PortName>) -> bool {
+        self.host.is_none() || self.modules.contains_key(&name.value.module)
+    }
+
+    /// A layer opens its own ports to others, and nobody else's.
+    pub(super) fn opens_its_own(&mut self, opened: &[Placed<PortName>]) {
+        for name in opened {
+            if self.opens(name) {
+                continue;
+            }
+            let message = format!("{} is not a port of this layer", name.value);
+            let help = "expected a port of one of its modules: what else is open is for its owner to say";
+            self.findings
+                .refuse(Rule::NotInManifest, name.at.clone(), message, help);
         }
     }
 

@@ -255,7 +255,8 @@ pub static HALT: Grammar = Grammar {
 /// `[outsiders]`.
 pub static OUTSIDERS: Grammar = Grammar {
     what: "[outsiders]",
-    about: "What processes beside the daemon may do; the daemon's own user always may plug in",
+    about: "What processes beside the daemon may do; the daemon's own user always may plug in. A layer's manifest has \
+            \"read\" and \"tap\" only, for its own ports",
     keys: &[
         key(
             "read",

@@ -49,7 +49,6 @@ pub(super) struct RawHalt {
 
 #[derive(Default)]
 pub(super) struct RawOutsiders {
-    pub(super) at: Range<usize>,
     /// `None` for all.
     pub(super) reads: Option<Vec<Placed<PortName>>>,
     pub(super) taps: Vec<Placed<PortName>>,
@@ -60,6 +59,8 @@ pub(super) struct RawOutsiders {
     pub(super) time_constant_min: Option<Placed<Span>>,
     pub(super) time_constant_max: Option<Placed<Span>>,
     pub(super) messages_max: Option<Placed<u64>>,
+    /// The keys given that say who and how much, not what is open: a manifest has none of them.
+    pub(super) limits: Vec<(&'static str, Range<usize>)>,
 }
 
 #[derive(Default)]
@@ -170,8 +171,12 @@ fn halt(value: &Spanned<DeValue<'_>>, findings: &mut Findings) -> Option<RawHalt
 fn outsiders(value: &Spanned<DeValue<'_>>, findings: &mut Findings) -> Option<RawOutsiders> {
     let mut table = Taking::table(value, &grammar::OUTSIDERS, findings)?;
     let reads = table.raw("read").and_then(|v| reads(v, table.findings));
+    let limits = grammar::OUTSIDERS.keys.iter().map(|key| key.name);
+    let limits = limits.filter(|key| !["read", "tap"].contains(key));
+    let limits = limits
+        .filter_map(|key| Some((key, table.keys.get(key)?.span())))
+        .collect();
     let outsiders = RawOutsiders {
-        at: value.span(),
         reads,
         taps: table.ports("tap"),
         users: accounts(table.raw("users"), "user", table.findings),
@@ -181,6 +186,7 @@ fn outsiders(value: &Spanned<DeValue<'_>>, findings: &mut Findings) -> Option<Ra
         time_constant_min: table.time("time_constant_min"),
         time_constant_max: table.time("time_constant_max"),
         messages_max: table.whole("messages_max"),
+        limits,
     };
     table.finish();
     Some(outsiders)

@@ -1,7 +1,15 @@
 //! Layers that join the running creature: checked once more, joined through the layers' hands, let go when
 //! their process leaves in whatever way.
 //!
+//! A tap on a layer of the daemon's own is joined by a command to its beating thread. A tap on a port of another
+//! attached layer is joined by that layer's process, which is told so in an order ([`orders`]); until it has
+//! answered, and whenever it is gone, the tap waits. Both are checked by the same policy.
+//!
 //! Must never wait for a layer process, nor let anything it says reach a real-time thread unchecked.
+
+mod attached;
+pub mod orders;
+mod others;
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};
@@ -10,55 +18,22 @@ use afsm::layer::{Command, Hand};
 use ipc::clock::{self, Span, Time};
 use ipc::control::{Plug, PlugTap};
 use ipc::wire::iceoryx::Domain;
-use ipc::wire::{Page, Reader, TapGauge};
+use ipc::wire::{Page, TapCounts, TapGauge};
 use ipc::wiring::creature::Creature;
 use ipc::wiring::directory::Directory;
 
 use crate::events::Events;
 use crate::flow::Flow;
-use crate::policy::Policy;
+use crate::policy::{Policy, settled, tap_end};
+use orders::Orders;
+
+pub use attached::{Attached, AttachedTap, Joined};
 
 /// How long a layer that broke the policy is kept out.
 pub const BARRED: Span = Span::secs(10);
 
 /// Most layers kept out at once: as many as may be attached.
 const BARRED_MAX: usize = 32;
-
-/// An attached layer, as its connection knows it.
-#[derive(Debug)]
-pub struct Joined {
-    /// Its number.
-    pub number: u32,
-    /// Set when it is let go against its will.
-    pub dismissed: Arc<AtomicBool>,
-}
-
-/// A tap that an attached layer holds.
-#[derive(Clone, Debug)]
-pub struct AttachedTap {
-    /// As asked for.
-    pub tap: PlugTap,
-    /// Where what happens at it is counted.
-    pub gauge: Arc<TapGauge>,
-    /// Its messages.
-    pub reader: Reader,
-}
-
-/// An attached layer.
-#[derive(Clone, Debug)]
-pub struct Attached {
-    /// Its number.
-    pub number: u32,
-    /// As asked for.
-    pub plug: Plug,
-    /// Its wires.
-    pub page: Arc<Page>,
-    /// Its taps.
-    pub taps: Vec<AttachedTap>,
-    /// Set when it is let go against its will: its connection is closed then.
-    pub dismissed: Arc<AtomicBool>,
-    flows: Vec<Flow>,
-}
 
 /// The layers attached, and how to reach into those of the creature.
 pub struct Plugs {
@@ -80,6 +55,11 @@ struct State {
 }
 
 impl State {
+    /// The layers attached, as the policy asks for them.
+    fn present(&self) -> impl Iterator<Item = (u32, &Plug)> {
+        self.attached.iter().map(|a| (a.number, &a.plug))
+    }
+
     /// The next tap's number. It comes round after 65,535 taps; one that old has long left.
     fn tap_number(&mut self) -> u16 {
         self.tap = self.tap.checked_add(1).unwrap_or(1);
@@ -106,8 +86,7 @@ impl Plugs {
 
     /// What the creature shows to newcomers, attached layers included.
     pub fn directory(&self) -> Directory {
-        let attached = self.attached();
-        self.policy.directory_with(attached.iter().map(|a| &a.plug))
+        self.policy.directory_with(self.lock().present())
     }
 
     /// The layers attached now.
@@ -141,6 +120,7 @@ impl Plugs {
     /// # Errors
     /// Every reason why not.
     pub fn attach(&self, plug: Plug, domain: &Domain) -> Result<Joined, Vec<String>> {
+        let plug = settled(plug);
         let result = self.try_attach(&plug, domain);
         let (layer, pid, taps) = (plug.layer.clone(), plug.pid, tapped(&plug));
         match &result {
@@ -164,10 +144,7 @@ impl Plugs {
             );
             return Err(vec![reason]);
         }
-        let attached = self.attached();
-        let reasons = self
-            .policy
-            .reasons_against(plug, attached.iter().map(|a| &a.plug));
+        let reasons = self.policy.reasons_against(plug, self.lock().present());
         if !reasons.is_empty() {
             return Err(reasons);
         }
@@ -181,19 +158,24 @@ impl Plugs {
             )]);
         }
         let mut state = self.lock();
-        if state.attached.len() >= self.policy.outsiders().layers_max {
-            return Err(vec!["the most layers allowed are attached".into()]);
-        }
-        if state.attached.iter().any(|a| a.plug.layer == plug.layer) {
-            return Err(vec![format!("a layer {:?} is attached already", plug.layer)]);
+        // Others may have come or gone meanwhile.
+        let reasons = self.policy.reasons_against(plug, state.present());
+        if !reasons.is_empty() {
+            return Err(reasons);
         }
         state.last += 1;
         let number = state.last;
         let mut taps = Vec::new();
         for tap in &plug.taps {
-            taps.push(self.join(&mut state, number, plug, tap, &page)?);
+            match self.join(&mut state, number, plug, tap, &page) {
+                Ok(tap) => taps.push(tap),
+                Err(reason) => {
+                    state.release(number, &taps, clock::monotonic());
+                    return Err(vec![reason]);
+                }
+            }
         }
-        let dismissed = Arc::new(AtomicBool::new(false));
+        let (dismissed, orders) = (Arc::new(AtomicBool::new(false)), Arc::new(Orders::default()));
         let now = clock::monotonic();
         state.attached.push(Attached {
             number,
@@ -202,11 +184,18 @@ impl Plugs {
             flows: taps.iter().map(|t| Flow::new(&t.reader, now)).collect(),
             taps,
             dismissed: dismissed.clone(),
+            orders: orders.clone(),
         });
+        self.introduce(&mut state, now);
         state.version += 1;
-        Ok(Joined { number, dismissed })
+        Ok(Joined {
+            number,
+            dismissed,
+            orders,
+        })
     }
 
+    /// Joins a tap of a newcomer, or has it joined.
     fn join(
         &self,
         state: &mut State,
@@ -214,24 +203,28 @@ impl Plugs {
         plug: &Plug,
         tap: &PlugTap,
         page: &Arc<Page>,
-    ) -> Result<AttachedTap, Vec<String>> {
+    ) -> Result<AttachedTap, String> {
         let gauge = Arc::new(TapGauge::numbered(state.tap_number()));
-        let joined = self.policy.join(number, plug, tap, page, gauge);
-        let (station, command) = (joined.station, joined.command);
-        if state.hands[station].commands.push(command).is_err() {
-            for hand in &mut state.hands {
-                let _ = hand.commands.push(Command::Release(number));
-            }
-            return Err(vec![format!(
-                "the layer of {} does not take up taps; is it beating?",
-                tap.to
-            )]);
-        }
-        Ok(AttachedTap {
+        let end = tap_end(number, plug, tap, page, gauge.clone());
+        let mut joining = AttachedTap {
             tap: tap.clone(),
-            gauge: joined.gauge,
-            reader: joined.reader,
-        })
+            gauge,
+            reader: end.reader.clone(),
+            at: None,
+            joined: true,
+            before: TapCounts::default(),
+        };
+        match self.policy.place(tap.how, &tap.to) {
+            Some((station, port)) => {
+                let command = Command::join(tap.how, port, end);
+                let commands = &mut state.hands[station].commands;
+                commands
+                    .push(command)
+                    .map_err(|_| format!("the layer of {} does not take up taps; is it beating?", tap.to))?;
+            }
+            None => state.have_joined(number, plug, &mut joining, clock::monotonic()),
+        }
+        Ok(joining)
     }
 
     /// Looks whether the attached layers keep to the policy: one that floods a tap is let go and not let in again
@@ -247,12 +240,17 @@ impl Plugs {
                     let layer = &attached.plug.layer;
                     if let Some(text) = flow.garbage(&tap.gauge, now) {
                         let text = format!("policy breach: layer {layer}: {text} on {}", tap.tap.from);
-                        breaches.push((None, layer.clone(), tap.tap.from.clone(), text));
+                        breaches.push((None, layer.clone(), vec![tap.tap.from.clone()], text));
                     }
                     if let Some(text) = flow.flood(tap.reader.number(), most, now) {
                         let text = format!("policy breach: layer {layer} floods {}: {text}", tap.tap.from);
                         attached.dismissed.store(true, Ordering::Relaxed);
-                        breaches.push((Some(attached.number), layer.clone(), tap.tap.from.clone(), text));
+                        breaches.push((
+                            Some(attached.number),
+                            layer.clone(),
+                            vec![tap.tap.from.clone()],
+                            text,
+                        ));
                         break;
                     }
                 }
@@ -263,9 +261,19 @@ impl Plugs {
                     state.barred.push((layer.clone(), now + BARRED));
                 }
             }
+            // Who was stopped for a while may come back at once.
+            for attached in state.attached.iter().filter(|a| a.orders.overdue(now)) {
+                let layer = &attached.plug.layer;
+                let text = format!(
+                    "policy breach: layer {layer} has not answered an order within {}",
+                    orders::ORDER_TIME
+                );
+                attached.dismissed.store(true, Ordering::Relaxed);
+                breaches.push((Some(attached.number), layer.clone(), Vec::new(), text));
+            }
         }
-        for (number, layer, wire, text) in breaches {
-            self.events.note_wires("policy", Some(&layer), &[wire], text);
+        for (number, layer, wires, text) in breaches {
+            self.events.note_wires("policy", Some(&layer), &wires, text);
             if let Some(number) = number {
                 self.detach(number, "was let go");
             }
@@ -280,22 +288,19 @@ impl Plugs {
         };
         let attached = state.attached.remove(index);
         state.version += 1;
-        for hand in &mut state.hands {
-            // A full ring belongs to a layer that does not beat: its taps run out by themselves.
-            let _ = hand.commands.push(Command::Release(number));
-        }
+        let now = clock::monotonic();
+        state.release(number, &attached.taps, now);
+        let waiting = state.miss(&attached.plug, now);
         drop(state);
         let Plug { layer, pid, .. } = &attached.plug;
-        let longest = attached
-            .plug
-            .taps
-            .iter()
-            .map(|t| t.time_constant)
-            .max()
-            .unwrap_or(Span::ZERO);
+        let longest = attached.plug.taps.iter().map(|t| t.time_constant).max();
+        let longest = longest.unwrap_or(Span::ZERO);
         let text = format!("layer {layer} (pid {pid}) {why}; its taps run out within {longest}");
         let taps = tapped(&attached.plug);
         self.events.note_wires("layer", Some(layer), &taps, text);
+        for (other, port, text) in waiting {
+            self.events.note_wires("layer", Some(&other), &[port], text);
+        }
     }
 }
 
