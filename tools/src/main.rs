@@ -12,6 +12,7 @@ mod paint;
 mod picture;
 mod prefixes;
 mod record;
+mod reference;
 mod replay;
 mod test;
 mod top;
@@ -162,6 +163,12 @@ enum Command {
         /// The folder; made if it is not there
         folder: PathBuf,
     },
+    /// Writes the reference of creature files, modules and commands into a folder, as Markdown
+    #[command(after_help = "Example: subsumectl reference target/reference")]
+    Reference {
+        /// The folder; made if it is not there
+        folder: PathBuf,
+    },
     /// Prints the JSON Schema of creature files, for editors
     Schema,
     /// Writes a folder to start from: a creature, or a layer in Rust
@@ -273,6 +280,7 @@ fn main() -> ExitCode {
             Ok(())
         }
         Command::Man { folder } => manual::pages(&folder),
+        Command::Reference { folder } => reference::write(&folder),
         Command::Wires => live::wires(creature, json),
         Command::Watch { wire, count, seconds } => watch::watch(creature, &wire, json, count, seconds),
         Command::Why { wire, when } => why::why(creature, &wire, &when.into(), json),

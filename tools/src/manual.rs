@@ -19,7 +19,8 @@ pub(crate) enum Program {
 }
 
 impl Program {
-    fn command(self) -> Command {
+    /// Its command line.
+    pub(crate) fn command(self) -> Command {
         match self {
             Program::Subsumectl => crate::Options::command(),
             Program::Subsumed => daemon::options::Options::command(),

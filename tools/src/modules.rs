@@ -86,6 +86,28 @@ fn show(families: &[Family], as_json: bool) {
     }
 }
 
+/// Every family on one page: each explained by its first kind.
+pub(crate) fn markdown() -> String {
+    let mut text = String::from(
+        "# Modules\n\nWhat creature files can be wired from. A kind such as `hold.bit` is `hold` for messages of another \
+         type. `subsumectl modules NAME` shows the same.\n",
+    );
+    let mut group = "";
+    for family in families(&kinds().modules()) {
+        if family.group != group {
+            group = family.group;
+            text += &format!("\n## {group}\n");
+        }
+        let first = family.kinds[0];
+        let (name, others) = (first.name, others(&family));
+        text += &format!(
+            "\n### {name}{others}\n\n```text\n{}\n```\n",
+            explained(first).trim_end()
+        );
+    }
+    text
+}
+
 /// The list, with columns that line up.
 fn listed(families: &[Family]) -> String {
     let wide = families.iter().map(|f| f.kinds[0].name.len()).max().unwrap_or(0);
@@ -189,12 +211,26 @@ fn takes_json(takes: &Takes) -> Value {
 
 /// Everything about one kind.
 fn explained(d: &Declaration) -> String {
+    let inputs: Vec<&Port> = d.inputs.iter().chain([&RESET]).collect();
+    let text = described(d, &inputs);
+    let example = example::of(d).replace('\n', "\n  ");
+    text + &format!(
+        "\nexample, a creature file of its own\n\n  {}\n",
+        example.trim_end()
+    )
+}
+
+/// A kind of body in the same way: it has no reset line and no example, as a creature has one body.
+pub(crate) fn body(d: &Declaration) -> String {
+    described(d, &d.inputs.iter().collect::<Vec<_>>())
+}
+
+fn described(d: &Declaration, inputs: &[&Port]) -> String {
     let mut text = format!("{}: {}\n\n", d.name, d.about);
     for line in d.diagram.lines() {
         text += &format!("  {line}\n");
     }
-    let inputs: Vec<&Port> = d.inputs.iter().chain([&RESET]).collect();
-    text += &table("inputs", inputs.into_iter().map(port_row));
+    text += &table("inputs", inputs.iter().map(|p| port_row(p)));
     text += &table("outputs", d.outputs.iter().map(port_row));
     text += &table(
         "parameters",
@@ -203,11 +239,7 @@ fn explained(d: &Declaration) -> String {
             [p.name, &default, p.unit, &range, p.about].map(String::from)
         }),
     );
-    let example = example::of(d).replace('\n', "\n  ");
-    text + &format!(
-        "\nexample, a creature file of its own\n\n  {}\n",
-        example.trim_end()
-    )
+    text
 }
 
 fn port_row(p: &Port) -> [String; 5] {
