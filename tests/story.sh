@@ -3,7 +3,7 @@
 # process, level 2 plugged in as a process on top of that; each is killed, all live; and every time it is asked whose
 # message drives the wheels.
 #
-#   tests/story.sh [FOLDER-OF-BINARIES]      default: target/release
+#   tests/story.sh [FOLDER-OF-BINARIES]      default: target/release; takes half a minute to two, as level 2 looks when it likes
 set -euo pipefail
 cd "$(dirname "$0")/.."
 bin=$(realpath "${1:-target/release}")
