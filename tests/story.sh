@@ -79,7 +79,7 @@ explore=$!
 until_shown "explore is attached" '^explore .*attached' status
 until_shown "its suppressor stands at wander" 'tap pathplan.heading > avoid.goal of layer explore joined at layer wander' events
 until_shown "its inhibitor stands at wander" 'tap whenlook.hold > wander.heading of layer explore joined at layer wander' events
-# It leads when it has found somewhere to go: it looks when the robot has come to rest, which takes half a minute or so.
+# It leads when it has found somewhere to go; it looks when the robot has come to rest, mostly within half a minute.
 until_shown "explore's message leads" '^avoid.goal: held by pathplan.heading of explore' holders
 until_shown "from explore through wander to the wheels" 'pathplan.heading' why turn.rate
 level_0_goes_on

@@ -49,8 +49,10 @@ pub fn holders(recording: &Recording, at: Time) -> Vec<Holder> {
     for (plug, tap) in recording.taps() {
         let newest = tap_newest(recording, plug, &tap, at);
         let running = newest.is_some_and(|stamp| stamp + tap.time_constant > at);
+        let manifest = &recording.manifest;
+        let filed = manifest.register_of(&tap.to).is_some() || manifest.writer_of(&tap.to).is_some();
         // A port of a layer that has gone is nobody's.
-        if recording.owner_of(&tap.to, at).is_some_and(|(_, gone)| gone) {
+        if !filed && recording.owner_of(&tap.to, at).is_none_or(|(_, gone)| gone) {
             continue;
         }
         if plug == 0 || running || came(plug) && !gone(plug) {
