@@ -14,8 +14,9 @@ pages=("$@")
 export CARGO_TARGET_DIR=${CARGO_TARGET_DIR:-$root/target}
 
 follow() { # PAGE, in a shell of its own
-  local page=$1 work block=0 info body started=() limit
-  work=$(mktemp -d)
+  page=$1 block=0 started=() work=$(mktemp -d)
+  # As the first page has it.
+  export PATH="$root/target/release:$PATH"
   export SUBSUMED_RUN=$work/run SUBSUMED_DOMAIN="book$$b$RANDOM" XDG_STATE_HOME=$work/state TMPDIR=$work
   unset STATE_DIRECTORY
   end() {
@@ -51,7 +52,11 @@ follow() { # PAGE, in a shell of its own
         set -m
         ( set +e; trap - EXIT; eval "$body" ) >"$work/terminal.$block" 2>&1 &
         started+=($!)
-        set +m ;;
+        set +m
+        # Whoever joins it next finds it there.
+        if [[ $body == subsumed* ]]; then
+          for _ in $(seq 300); do compgen -G "$SUBSUMED_RUN/*.sock" >/dev/null && break; sleep 0.1; done
+        fi ;;
       until\ *)
         limit=$((SECONDS + 240))
         until eval "$body" >"$work/said" 2>&1 && grep -q -- "${info#until }" "$work/said"; do

@@ -199,7 +199,11 @@ pub(crate) fn wade(reader: &Reader, length: Duration) {
     // A read is four tries of about 10 ns. This bound leaves room for a machine that does much else, and still
     // tells a read from one that waits for the writer to pause: this one never does.
     let mean = begun.elapsed() / u32::try_from(reads).unwrap();
-    assert!(mean < MEAN_READ_MAX, "a read took {mean:?} in the mean");
+    // An interpreter takes milliseconds for it.
+    assert!(
+        cfg!(miri) || mean < MEAN_READ_MAX,
+        "a read took {mean:?} in the mean"
+    );
 }
 
 fn flood(t: &dyn Transport) {

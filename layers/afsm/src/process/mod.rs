@@ -36,7 +36,12 @@ const RETRY: Duration = Duration::from_millis(250);
 /// Arguments: `--creature NAME` (default: the one the manifest names), `--once` (leave when the daemon
 /// leaves), `--wait` (try until let in), `--help`. Status: 0 after a signal, 1 when refused or the daemon is gone, 2 for bad input.
 pub fn run(manifest: Source, kinds: Kinds) -> ExitCode {
-    match Options::read(std::env::args().skip(1)) {
+    run_with(manifest, kinds, std::env::args().skip(1))
+}
+
+/// [`run`] with arguments of the caller's choice: what is left of its own when it has taken some for itself.
+pub fn run_with(manifest: Source, kinds: Kinds, arguments: impl Iterator<Item = String>) -> ExitCode {
+    match Options::read(arguments) {
         Ok(options) => match attend(&manifest, &kinds, &options) {
             Ok(()) => ExitCode::SUCCESS,
             Err(Trouble::Manifest(rejected)) => {
