@@ -30,10 +30,11 @@ const NAMES: [(Causes, &str); CAUSES] = [
     (Causes::BODY, "body lost"),
     (Causes::WATCHDOG, "watchdog late"),
     (Causes::MEMORY, "shared memory cut"),
+    (Causes::PANIC, "panic"),
 ];
 
 /// How many causes there are.
-pub const CAUSES: usize = 11;
+pub const CAUSES: usize = 12;
 
 impl Causes {
     /// Nothing: the gate is open.
@@ -61,12 +62,14 @@ impl Causes {
     pub const WATCHDOG: Causes = Causes(512);
     /// Somebody cut a shared-memory segment short under this process. Latched, and never reset.
     pub const MEMORY: Causes = Causes(1024);
+    /// A thread of this process panicked. Latched, and never reset.
+    pub const PANIC: Causes = Causes(2048);
 
     /// Causes that stay until reset.
-    pub const LATCHED: Causes = Causes(16 | 32 | 64 | 128 | 512 | 1024);
+    pub const LATCHED: Causes = Causes(16 | 32 | 64 | 128 | 512 | 1024 | 2048);
 
     /// Causes that no reset ends: the process has to go.
-    pub const FINAL: Causes = Causes(128 | 1024);
+    pub const FINAL: Causes = Causes(128 | 1024 | 2048);
 
     /// Every cause with its name, in the order of its bit.
     pub fn named() -> impl Iterator<Item = (Causes, &'static str)> {

@@ -101,6 +101,9 @@ impl HaltChannel {
         if now.has(Causes::MEMORY) {
             return Err("a shared-memory segment was cut short; the daemon leaves, start it again".into());
         }
+        if now.has(Causes::PANIC) {
+            return Err("a thread of the daemon panicked; the daemon leaves, start it again".into());
+        }
         let standing = self.watched().and(Causes::LATCHED);
         if standing != Causes::NONE {
             let names = standing.names().join(", ");
@@ -188,7 +191,7 @@ mod tests {
 
     #[test]
     fn nothing_resets_a_daemon_that_has_to_go() {
-        for cause in [Causes::SHUTDOWN, Causes::MEMORY] {
+        for cause in [Causes::SHUTDOWN, Causes::MEMORY, Causes::PANIC] {
             let channel = HaltChannel::default();
             channel.show(cause, Time(1));
             assert!(channel.reset().is_err());

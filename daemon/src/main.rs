@@ -14,6 +14,7 @@ use daemon::feeder::{self, Fed};
 use daemon::machine::{Machine, cells_apart, kinds};
 use daemon::metrics::{self, Endpoint, Metrics};
 use daemon::options::Options;
+use daemon::panicked;
 use daemon::running::{self, Running};
 use daemon::segment;
 use daemon::view::View;
@@ -92,6 +93,7 @@ fn run(options: &Options, creature: Creature, file: String) -> Result<(), String
     let _ = host::be_ordinary();
     let name = creature.name.clone();
     control::claim(&name).map_err(|e| e.to_string())?;
+    panicked::guard();
     segment::guard().map_err(|e| format!("a handler for SIGBUS: {e}"))?;
     let domain = Domain::join(&name).map_err(|e| e.to_string())?;
     let cells = match options.body {
@@ -121,6 +123,9 @@ fn run(options: &Options, creature: Creature, file: String) -> Result<(), String
             println!("metrics: http://{address}/metrics");
         }
         wait(options, &leave, || reload(options, &hup, &running));
+        if panicked::any() {
+            running.leave_panicked();
+        }
         if segment::cut() > 0 {
             running.leave_cut();
         }
@@ -206,7 +211,7 @@ fn reload(options: &Options, hup: &AtomicBool, running: &Running) {
 fn wait(options: &Options, leave: &AtomicBool, look: impl Fn()) {
     let began = Instant::now();
     let limit = options.seconds.map(Duration::from_secs_f64);
-    let goes_on = || !leave.load(Ordering::Relaxed) && segment::cut() == 0;
+    let goes_on = || !leave.load(Ordering::Relaxed) && segment::cut() == 0 && !panicked::any();
     while goes_on() && limit.is_none_or(|limit| began.elapsed() < limit) {
         look();
         std::thread::sleep(Duration::from_millis(20));

@@ -22,6 +22,8 @@ use crate::body::{self, BodyKind, MotorEnd};
 use crate::executor::gauge::BeatGauge;
 use crate::gate::{Causes, Gate, Passage, Seen};
 use crate::halt::HaltChannel;
+use crate::newest::Newest;
+use crate::panicked;
 use crate::segment;
 use crate::watchdog::{Thaw, Vital};
 
@@ -36,7 +38,9 @@ pub struct Motor {
     link: MotorEnd,
     sensors: Vec<Sensor>,
     passed: Vec<Words>,
-    reflexes: Vec<Reader>,
+    /// When the world last said that it lives.
+    pulse: Newest,
+    reflexes: Vec<(Reader, Newest)>,
     vital: Vec<Arc<BeatGauge>>,
     watchdog: Vital,
     thaw: Thaw,
@@ -125,11 +129,12 @@ impl Motor {
             link,
             sensors: sensors.into_iter().map(Sensor::new).collect(),
             passed: vec![[0.0; WORDS_MAX]; inputs.len()],
+            pulse: Newest::default(),
             reflexes: creature
                 .halt
                 .reflexes
                 .iter()
-                .map(|r| wires.reader(r).expect("checked"))
+                .map(|r| (wires.reader(r).expect("checked"), Newest::default()))
                 .collect(),
             vital: vital.map(|(_, gauge)| gauge.clone()).collect(),
             watchdog: Vital::new("watchdog", channel.watchdog.clone(), body.period),
@@ -165,6 +170,7 @@ impl Motor {
         if self.link.taker.take(&mut self.link.readers) {
             // Another world: what it says counts from the beginning.
             self.sensors.iter_mut().for_each(|sensor| sensor.seen = 0);
+            self.pulse.forget();
         }
         for register in &mut self.registers {
             // Taps of the creature file never leave, so there is none to give back.
@@ -263,9 +269,9 @@ impl Motor {
             unsound,
             reflex: self
                 .reflexes
-                .iter()
-                .filter_map(|r| r.read())
-                .map(|r| r.stamp.min(now))
+                .iter_mut()
+                .filter_map(|(wire, newest)| newest.look(wire))
+                .map(|stamp| stamp.min(now))
                 .max(),
             vital_began,
             standing,
@@ -282,13 +288,16 @@ impl Motor {
             standing = standing.with(Causes::WATCHDOG);
         }
         // A pulse from the future is no pulse: its writer's clock, or the cell, is wrong.
-        let pulse = self.link.readers.pulse.read().map(|r| r.stamp);
+        let pulse = self.pulse.look(&self.link.readers.pulse);
         let lives = |stamp: Time| stamp <= now + AHEAD_MAX && now.since(stamp) <= self.kind.stale;
         if !pulse.is_some_and(lives) {
             standing = standing.with(Causes::BODY);
         }
         if segment::cut() > 0 {
             standing = standing.with(Causes::MEMORY);
+        }
+        if panicked::any() {
+            standing = standing.with(Causes::PANIC);
         }
         standing
     }

@@ -92,7 +92,7 @@ impl Options {
     Status: 0 after a signal or --seconds; 1 when the host refuses; 2 for bad input."
 )]
 pub struct BodyOptions {
-    /// The creature file whose [body] is run; without it, Allen's
+    /// The creature file whose `body` table is run; without it, Allen's
     #[arg(long, value_name = "FILE")]
     pub creature: Option<PathBuf>,
     /// Name by which the daemon finds it; the creature's own if not given

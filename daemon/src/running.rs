@@ -309,6 +309,13 @@ impl Running {
         std::process::exit(1)
     }
 
+    /// Halts the body, waits until it stands, and ends the process the hard way: a thread panicked, and may be held
+    /// up in saying so for as long as nobody reads what it says.
+    pub fn leave_panicked(&self) -> ! {
+        self.come_to_a_stand(Causes::PANIC);
+        std::process::abort()
+    }
+
     /// Waits until the gate has closed for `cause` and the body stands.
     fn come_to_a_stand(&self, cause: Causes) {
         // Ten beats of the motor unit at its default period; then its end of the link is stale anyway.

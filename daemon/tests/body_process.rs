@@ -1,14 +1,14 @@
 //! A body in a process of its own: halted unless a living daemon drives it, and neither end needs the other
 //! to start in any order or to stay.
 
-mod stage;
+mod scene;
 
 use rustix::process::Signal;
-use stage::{Stage, wait_for};
+use scene::{Scene, wait_for};
 
 #[test]
 fn a_killed_daemon_halts_the_body_and_the_next_one_drives_it_again() {
-    let stage = Stage::new("bodykill");
+    let stage = Scene::new("bodykill");
     let mut body = stage.body("hall");
     let mut daemon = stage.daemon("first", &["--body", "hall"]);
     body.says("free to move", 1);
@@ -25,7 +25,7 @@ fn a_killed_daemon_halts_the_body_and_the_next_one_drives_it_again() {
 
 #[test]
 fn a_frozen_daemon_halts_the_body_and_goes_on_when_it_thaws() {
-    let stage = Stage::new("bodystop");
+    let stage = Scene::new("bodystop");
     let body = stage.body("hall");
     let daemon = stage.daemon("frozen", &["--body", "hall"]);
     body.says("free to move", 1);
@@ -42,7 +42,7 @@ fn a_frozen_daemon_halts_the_body_and_goes_on_when_it_thaws() {
 
 #[test]
 fn a_lost_body_halts_until_one_of_its_name_is_back() {
-    let stage = Stage::new("bodylost");
+    let stage = Scene::new("bodylost");
     let daemon = stage.daemon("alone", &["--body", "hall"]);
     wait_for("it says what is missing", || {
         stage.happened("alone", &["no body \"hall\"", "subsumed-body"])
@@ -77,7 +77,7 @@ fn a_lost_body_halts_until_one_of_its_name_is_back() {
 
 #[test]
 fn one_daemon_drives_a_body_and_one_process_runs_it() {
-    let stage = Stage::new("bodytwo");
+    let stage = Scene::new("bodytwo");
     let body = stage.body("hall");
     body.says("waits for a daemon", 1);
     let mut second = stage.body("hall");
@@ -102,7 +102,7 @@ fn one_daemon_drives_a_body_and_one_process_runs_it() {
 
 #[test]
 fn bad_names_and_bodies_are_bad_input() {
-    let stage = Stage::new("bodybad");
+    let stage = Scene::new("bodybad");
     for (arguments, expected) in [
         (["--body", "a/b"], "--body \"a/b\": expected 1 to 48 letters"),
         (["--body", ""], "--body \"\": expected 1 to 48 letters"),

@@ -1,19 +1,13 @@
 //! A process of the same user cuts shared memory short under a daemon or a body: both halt and leave with a
 //! failure, and the next start works.
 
-mod stage;
+mod scene;
 
 use std::fs::File;
 use std::os::unix::fs::PermissionsExt;
 use std::path::PathBuf;
 
-use stage::{Stage, wait_for};
-
-/// The segments in which pages of wires lie.
-fn segments(stage: &Stage) -> Vec<PathBuf> {
-    let is_data = |f: &PathBuf| f.starts_with("/dev/shm") && f.extension().is_some_and(|e| e == "data");
-    stage.files().into_iter().filter(is_data).collect()
-}
+use scene::{Scene, segments, wait_for};
 
 fn cut(segment: &PathBuf) {
     let file = File::options()
@@ -25,7 +19,7 @@ fn cut(segment: &PathBuf) {
 
 #[test]
 fn a_daemon_whose_wires_are_cut_halts_leaves_and_starts_again() {
-    let stage = Stage::new("cutwires");
+    let stage = Scene::new("cutwires");
     let mut daemon = stage.daemon("cut", &[]);
     wait_for("the body is free", || stage.is_free("cut"));
     let segments = segments(&stage);
@@ -41,7 +35,7 @@ fn a_daemon_whose_wires_are_cut_halts_leaves_and_starts_again() {
 
 #[test]
 fn a_layer_that_cuts_its_own_wires_halts_the_body_too() {
-    let stage = Stage::new("cutlayer");
+    let stage = Scene::new("cutlayer");
     let mut daemon = stage.daemon("cut", &[]);
     let before = segments(&stage);
     let mut wander = stage.wander("cut");
@@ -64,7 +58,7 @@ fn a_layer_that_cuts_its_own_wires_halts_the_body_too() {
 
 #[test]
 fn a_body_process_whose_sensors_are_cut_halts_and_leaves() {
-    let stage = Stage::new("cutbody");
+    let stage = Scene::new("cutbody");
     let mut body = stage.body("hall");
     body.says("waits for a daemon", 1);
     let of_body = segments(&stage);
@@ -84,7 +78,7 @@ fn a_body_process_whose_sensors_are_cut_halts_and_leaves() {
 
 #[test]
 fn sockets_and_segments_are_for_the_same_user_only() {
-    let stage = Stage::new("modes");
+    let stage = Scene::new("modes");
     let _body = stage.body("hall");
     let _daemon = stage.daemon("modes", &["--body", "hall"]);
     let _wander = stage.wander("modes");

@@ -1,15 +1,15 @@
 //! Who is fed while all is well: systemd's watchdog, and a device that a plain file stands in for.
 
-mod stage;
+mod scene;
 
 use std::os::unix::net::UnixDatagram;
 use std::time::Duration;
 
 use rustix::process::Signal;
-use stage::{Stage, wait_for};
+use scene::{Scene, wait_for};
 
 /// A creature file with a watchdog device.
-fn with_device(stage: &Stage, device: &str) -> String {
+fn with_device(stage: &Scene, device: &str) -> String {
     let text = allen::CREATURE.replace("[halt]\n", &format!("[halt]\nwatchdog_device = \"{device}\"\n"));
     assert_ne!(text, allen::CREATURE, "allen.toml has a [halt] of its own line");
     let path = stage.run.join("fed.toml");
@@ -19,7 +19,7 @@ fn with_device(stage: &Stage, device: &str) -> String {
 
 #[test]
 fn systemd_hears_ready_meals_while_all_beat_and_stopping() {
-    let stage = Stage::new("systemd");
+    let stage = Scene::new("systemd");
     let path = stage.run.join("notify");
     let socket = UnixDatagram::bind(&path).expect("a socket for the test");
     let heard = |wait: Duration| {
@@ -73,7 +73,7 @@ fn systemd_hears_ready_meals_while_all_beat_and_stopping() {
 
 #[test]
 fn a_device_is_fed_and_bidden_farewell_only_after_an_orderly_halt() {
-    let stage = Stage::new("device");
+    let stage = Scene::new("device");
     let device = stage.run.join("watchdog");
     std::fs::write(&device, "").expect("a stand-in");
     let creature = with_device(&stage, &device.to_string_lossy());
@@ -98,7 +98,7 @@ fn a_device_is_fed_and_bidden_farewell_only_after_an_orderly_halt() {
 
 #[test]
 fn a_device_that_cannot_be_fed_refuses_the_start() {
-    let stage = Stage::new("nodevice");
+    let stage = Scene::new("nodevice");
     let creature = with_device(&stage, "/nowhere/watchdog");
     let mut daemon = stage.start(
         env!("CARGO_BIN_EXE_subsumed"),

@@ -1,7 +1,7 @@
 //! Halts that latch, on a running daemon: a vital layer that stops beating, a layer that overruns under policy
 //! halt, an emergency stop. A reset is refused for as long as the cause stands; nothing taps the halt channel.
 
-mod stage;
+mod scene;
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -17,7 +17,7 @@ use daemon::running::{self, Running};
 use ipc::wire::iceoryx::Domain;
 use ipc::wiring::directory::output_ports;
 use ipc::wiring::{Declaration, Port, Source, check};
-use stage::wait_for;
+use scene::wait_for;
 
 /// While set, the module `hold` does not come back from its step.
 static HELD: AtomicBool = AtomicBool::new(false);

@@ -1,45 +1,21 @@
 //! What callers and layers may not do to a daemon: hold others up, take its memory, flood it, or come in as
 //! somebody else. Each is tried with real connections and pages.
 
-mod stage;
+mod scene;
 
 use std::io::{BufRead, BufReader, Read, Write};
 use std::os::unix::net::UnixStream;
-use std::path::PathBuf;
-use std::process::{Command, Stdio};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 use ipc::clock::{self, Span};
-use ipc::control::{Connection, Plug, PlugTap, REQUEST_MAX, Reply, Request, Versions};
+use ipc::control::{Connection, Plug, REQUEST_MAX, Reply, Request, Versions};
 use ipc::message::{Kind, WORDS_MAX};
 use ipc::wire::Writer;
 use ipc::wire::iceoryx::{Domain, OwnedPage};
-use ipc::wiring::creature::How;
-use ipc::wiring::directory::Listed;
-use stage::{Stage, wait_for};
-
-/// Runs `test` in a process of its own whose domain and run directory are those of a stage, so that it can
-/// share wires there. Says whether this is that process.
-fn on_stage(test: &str, short: &str) -> Option<Stage> {
-    if let (Ok(domain), Some(run)) = (std::env::var("SUBSUMED_DOMAIN"), std::env::var_os("SUBSUMED_RUN")) {
-        return Some(Stage {
-            domain,
-            run: PathBuf::from(run),
-        });
-    }
-    let stage = Stage::new(short);
-    let status = Command::new(std::env::current_exe().expect("this program has a path"))
-        .args([test, "--exact", "--nocapture"])
-        .env("SUBSUMED_DOMAIN", &stage.domain)
-        .env("SUBSUMED_RUN", &stage.run)
-        .stdin(Stdio::null())
-        .status()
-        .expect("this program starts");
-    assert!(status.success(), "{test} on its stage: {status}");
-    None
-}
+use scene::{Scene, on_stage, wait_for};
+use stage::announcement;
 
 /// A layer that shares one wire and taps `turn.heading` with it, beating whatever way its test wants.
 struct Layer {
@@ -49,7 +25,7 @@ struct Layer {
 }
 
 impl Layer {
-    fn plug(stage: &Stage, creature: &str, name: &str) -> Result<Layer, String> {
+    fn plug(stage: &Scene, creature: &str, name: &str) -> Result<Layer, String> {
         let domain = Domain::join(name).map_err(|e| e.to_string())?;
         let owner = format!("{creature}/{name}");
         let owned = domain.own(&owner, 1).map_err(|e| e.to_string())?;
@@ -63,34 +39,10 @@ impl Layer {
             program: "tester".into(),
         };
         connection.ask(&hello).expect("the daemon answers");
-        let port = format!("{name}.heading");
+        // Whatever process it claims to be, the one that speaks counts.
         let plug = Plug {
-            layer: name.into(),
-            level: 1,
-            period: Span::millis(20),
             pid: 1,
-            owner: owner.clone(),
-            outputs: vec![Listed {
-                name: port.clone(),
-                kind: Kind::Polar,
-                unit: String::new(),
-                level: Some(1),
-                owner,
-                index: 0,
-                plug: 0,
-            }],
-            inputs: Vec::new(),
-            open_taps: Vec::new(),
-            open_reads: None,
-            neighbours: Vec::new(),
-            modules: Vec::new(),
-            wires: Vec::new(),
-            taps: vec![PlugTap {
-                how: How::Suppress,
-                from: port,
-                to: "turn.heading".into(),
-                time_constant: Span::secs(1),
-            }],
+            ..announcement(creature, name, Span::millis(20), Span::secs(1))
         };
         match connection.ask(&Request::Plug(plug)).expect("the daemon answers") {
             Reply::Plugged { .. } => Ok(Layer {
@@ -208,7 +160,7 @@ fn garbage_on_a_tap_is_named_and_does_nothing() {
 
 #[test]
 fn callers_that_drip_or_say_nothing_hold_nobody_up() {
-    let stage = Stage::new("loris");
+    let stage = Scene::new("loris");
     let mut daemon = stage.daemon("patient", &[]);
     let mut silent = Vec::new();
     for round in 0..100 {
@@ -236,7 +188,7 @@ fn callers_that_drip_or_say_nothing_hold_nobody_up() {
 
 #[test]
 fn a_request_takes_a_bounded_share_of_memory() {
-    let stage = Stage::new("greedy");
+    let stage = Scene::new("greedy");
     let mut daemon = stage.daemon("bounded", &[]);
     let mut stream = UnixStream::connect(stage.socket("bounded")).expect("the daemon listens");
     let mut sent = 0;

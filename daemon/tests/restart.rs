@@ -1,16 +1,16 @@
 //! Starting again after SIGKILL, with layers attached: at once, the layers come back by themselves, and nothing
 //! of the dead remains. Two daemons side by side see nothing of each other.
 
-mod stage;
+mod scene;
 
 use std::path::PathBuf;
 
 use ipc::control::{Reply, Request};
-use stage::{Stage, wait_for};
+use scene::{Scene, wait_for};
 
 #[test]
 fn after_sigkill_the_next_start_works_and_attached_layers_come_back() {
-    let stage = Stage::new("again");
+    let stage = Scene::new("again");
     let mut daemon = stage.daemon("again", &[]);
     let mut wander = stage.wander("again");
     wait_for("wander is attached", || stage.has_layer("again", "wander"));
@@ -42,14 +42,14 @@ fn after_sigkill_the_next_start_works_and_attached_layers_come_back() {
 }
 
 /// Whether a file belongs to a node that lives: iceoryx2 keeps a directory for each.
-fn of_wander(file: &str, stage: &Stage) -> bool {
+fn of_wander(file: &str, stage: &Scene) -> bool {
     let nodes = format!("/tmp/iceoryx2-{}/nodes", stage.domain);
     file.starts_with(&nodes)
 }
 
 #[test]
 fn two_daemons_side_by_side_have_wires_of_their_own() {
-    let stage = Stage::new("pair");
+    let stage = Scene::new("pair");
     let mut tom = stage.daemon("tom", &["--seed", "1"]);
     let mut jerry = stage.daemon("jerry", &["--seed", "2"]);
     let mut wander = stage.wander("tom");

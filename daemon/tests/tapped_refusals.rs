@@ -1,7 +1,7 @@
 //! Taps on a plugged layer that are not let in, and owners that do not do as they are told: the daemon goes on, and
 //! nobody is held up.
 
-mod stage;
+mod scene;
 mod tower;
 
 use std::os::unix::net::UnixStream;
@@ -15,14 +15,14 @@ use ipc::message::Kind;
 use ipc::wire::iceoryx::Domain;
 use ipc::wiring::creature::How;
 use ipc::wiring::directory::Directory;
-use stage::{Stage, wait_for};
+use scene::{Scene, wait_for};
 use tower::{
     MIDDLE, TOP, TOWER, attached, bare, daemon, greeted, layer, lonely_top, on_stage, port, says, tap,
 };
 
 #[test]
 fn what_is_not_open_on_a_plugged_layer_is_refused() {
-    let stage = Stage::new("closed");
+    let stage = Scene::new("closed");
     let mut daemon = daemon(&stage);
     let _middle = attached(&stage, "middle", MIDDLE);
     let refused = |what: &str, change: (&str, &str), reason: &str| {
@@ -110,7 +110,7 @@ fn what_is_not_open_on_a_plugged_layer_is_refused() {
 }
 
 /// A level 1 that opens its input to all and does nothing: the daemon maps its page, and that is all it gets.
-fn idle(stage: &Stage, leave: &Arc<AtomicBool>) -> Connection {
+fn idle(stage: &Scene, leave: &Arc<AtomicBool>) -> Connection {
     let domain = Domain::join("idle").expect("shared memory works");
     let owned = domain.own(&format!("{TOWER}/idle"), 1).expect("a page");
     let left = leave.clone();
@@ -199,7 +199,7 @@ fn an_owner_that_does_not_answer_or_lies_is_let_go_and_holds_nobody_up() {
 
 #[test]
 fn the_directory_shows_what_an_attached_layer_opens() {
-    let stage = Stage::new("shown");
+    let stage = Scene::new("shown");
     let mut daemon = daemon(&stage);
     let directory = || -> Directory {
         match stage.ask(TOWER, &Request::Directory) {

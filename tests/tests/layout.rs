@@ -142,6 +142,26 @@ fn layers_read_no_clock() {
     }
 }
 
+/// Files that ask for the date, for what they call a recording or write at its top. Nothing that beats, halts or
+/// waits is among them: a step of the wall clock moves no deadline.
+const DATED: [&str; 2] = [
+    "daemon/src/recorder/flight.rs",
+    "daemon/recording/src/manifest.rs",
+];
+
+#[test]
+fn nothing_but_the_names_of_recordings_hangs_on_the_wall_clock() {
+    for (path, text) in files(".rs") {
+        let runs =
+            ["ipc/", "layers/", "daemon/"].iter().any(|f| path.starts_with(f)) && path.contains("/src/");
+        let wall = ["SystemTime", "ClockId::Realtime", "CLOCK_REALTIME", "UNIX_EPOCH"];
+        let asks = wall.iter().any(|word| text.contains(word));
+        if runs && asks {
+            assert!(DATED.contains(&path.as_str()), "{path} reads the wall clock");
+        }
+    }
+}
+
 #[test]
 fn layers_know_no_body() {
     for (path, text) in files("Cargo.toml") {

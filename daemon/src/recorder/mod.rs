@@ -51,7 +51,8 @@ pub const KEPT: Causes = Causes::STALE
     .with(Causes::EMERGENCY)
     .with(Causes::BODY)
     .with(Causes::WATCHDOG)
-    .with(Causes::MEMORY);
+    .with(Causes::MEMORY)
+    .with(Causes::PANIC);
 
 /// What is to be recorded without anybody asking.
 #[derive(Clone, Debug, Default)]

@@ -3,8 +3,6 @@
 #![allow(dead_code)] // each test file uses its part of it
 
 use std::os::unix::net::UnixStream;
-use std::path::PathBuf;
-use std::process::{Command, Stdio};
 
 use ipc::clock::Span;
 use ipc::control::{Connection, Plug, PlugTap, Reply, Request, Versions};
@@ -13,7 +11,8 @@ use ipc::wiring::creature::How;
 use ipc::wiring::directory::Listed;
 use serde_json::Value;
 
-use crate::stage::{Player, Stage, wait_for};
+pub(crate) use crate::scene::on_stage;
+use crate::scene::{Player, Scene, wait_for};
 
 /// The name of the running creature.
 pub(crate) const TOWER: &str = "tower";
@@ -71,33 +70,12 @@ hush = { kind = "constant", value = 0.0, every = "20ms" }
 ear = { kind = "gain", factor = 1.0 }
 "#;
 
-/// Runs `test` in a process of its own whose domain and run directory are those of a stage, so that it can
-/// read wires there. The stage, if this is that process.
-pub(crate) fn on_stage(test: &str, short: &str) -> Option<Stage> {
-    if let (Ok(domain), Some(run)) = (std::env::var("SUBSUMED_DOMAIN"), std::env::var_os("SUBSUMED_RUN")) {
-        return Some(Stage {
-            domain,
-            run: PathBuf::from(run),
-        });
-    }
-    let stage = Stage::new(short);
-    let status = Command::new(std::env::current_exe().expect("this program has a path"))
-        .args([test, "--exact", "--nocapture"])
-        .env("SUBSUMED_DOMAIN", &stage.domain)
-        .env("SUBSUMED_RUN", &stage.run)
-        .stdin(Stdio::null())
-        .status()
-        .expect("this program starts");
-    assert!(status.success(), "{test} on its stage: {status}");
-    None
-}
-
-pub(crate) fn daemon(stage: &Stage) -> Player {
+pub(crate) fn daemon(stage: &Scene) -> Player {
     daemon_with(stage, &[])
 }
 
 /// The same, told more.
-pub(crate) fn daemon_with(stage: &Stage, arguments: &[&str]) -> Player {
+pub(crate) fn daemon_with(stage: &Scene, arguments: &[&str]) -> Player {
     let file = stage.run.join("tower.toml");
     std::fs::write(&file, GROUND).expect("the stage takes files");
     let file = file.display().to_string();
@@ -107,12 +85,12 @@ pub(crate) fn daemon_with(stage: &Stage, arguments: &[&str]) -> Player {
 }
 
 /// A layer process of this manifest.
-pub(crate) fn layer(stage: &Stage, name: &str, manifest: &str) -> Player {
+pub(crate) fn layer(stage: &Scene, name: &str, manifest: &str) -> Player {
     layer_with(stage, name, manifest, &[])
 }
 
 /// The same, told more.
-pub(crate) fn layer_with(stage: &Stage, name: &str, manifest: &str, arguments: &[&str]) -> Player {
+pub(crate) fn layer_with(stage: &Scene, name: &str, manifest: &str, arguments: &[&str]) -> Player {
     let file = stage.run.join(format!("{name}.toml"));
     std::fs::write(&file, manifest).expect("the stage takes files");
     let daemon = std::path::Path::new(env!("CARGO_BIN_EXE_subsumed"));
@@ -121,7 +99,7 @@ pub(crate) fn layer_with(stage: &Stage, name: &str, manifest: &str, arguments: &
     stage.start_with(program, arguments, &[("LAYER_MANIFEST", &manifest)])
 }
 
-pub(crate) fn attached(stage: &Stage, name: &str, manifest: &str) -> Player {
+pub(crate) fn attached(stage: &Scene, name: &str, manifest: &str) -> Player {
     let player = layer(stage, name, manifest);
     wait_for(
         &format!("{name} is attached, so far: {:?}", player.said()),
@@ -131,7 +109,7 @@ pub(crate) fn attached(stage: &Stage, name: &str, manifest: &str) -> Player {
 }
 
 /// One of a list of the status, by what `key` says.
-pub(crate) fn listed(stage: &Stage, list: &str, key: &str, name: &str) -> Value {
+pub(crate) fn listed(stage: &Scene, list: &str, key: &str, name: &str) -> Value {
     let status = stage.status(TOWER);
     let mut items = status[list].as_array().into_iter().flatten();
     items
@@ -140,19 +118,19 @@ pub(crate) fn listed(stage: &Stage, list: &str, key: &str, name: &str) -> Value 
         .unwrap_or(Value::Null)
 }
 
-pub(crate) fn says(stage: &Stage, wire: &str) -> f64 {
+pub(crate) fn says(stage: &Scene, wire: &str) -> f64 {
     listed(stage, "wires", "wire", wire)["value"]
         .as_f64()
         .unwrap_or(f64::NAN)
 }
 
-pub(crate) fn messages(stage: &Stage, wire: &str) -> u64 {
+pub(crate) fn messages(stage: &Scene, wire: &str) -> u64 {
     listed(stage, "wires", "wire", wire)["messages"]
         .as_u64()
         .unwrap_or(0)
 }
 
-pub(crate) fn tap(stage: &Stage, from: &str) -> Value {
+pub(crate) fn tap(stage: &Scene, from: &str) -> Value {
     listed(stage, "taps", "from", from)
 }
 
@@ -193,7 +171,7 @@ pub(crate) fn port(name: &str, level: u8) -> Listed {
     }
 }
 
-pub(crate) fn greeted(stage: &Stage) -> Connection {
+pub(crate) fn greeted(stage: &Scene) -> Connection {
     let stream = UnixStream::connect(stage.socket(TOWER)).expect("the daemon listens");
     let mut connection = Connection::over(stream).expect("a socket can be cloned");
     let hello = Request::Hello {

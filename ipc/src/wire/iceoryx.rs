@@ -27,6 +27,7 @@ use iceoryx2::service::ipc_threadsafe;
 
 use super::cell::{Cell, LAYOUT};
 use super::page::{Page, WIRES_MAX};
+use super::room::{self, SHARED_MEMORY};
 
 /// Version of iceoryx2 that this was built with; two versions do not share memory.
 pub const ICEORYX2: &str = "0.10.0";
@@ -64,6 +65,13 @@ pub enum ShareError {
     Incompatible(String),
     /// The owner did not hand its page over in time.
     Silent(String),
+    /// There is too little shared memory left.
+    Full {
+        /// How many bytes there are.
+        free: u64,
+        /// How many it takes.
+        needed: u64,
+    },
     /// iceoryx2 or the host refused; the text says which call.
     Refused(String),
 }
@@ -87,6 +95,13 @@ impl fmt::Display for ShareError {
             ShareError::Silent(name) => {
                 write!(f, "the owner of the wires of {name:?} did not answer within 2 s")
             }
+            ShareError::Full { free, needed } => write!(
+                f,
+                "shared memory is full: {} KiB are free in {SHARED_MEMORY}, {} are needed; remove files there, \
+                 or mount it larger",
+                free >> 10,
+                needed >> 10
+            ),
             ShareError::Refused(why) => write!(f, "shared memory refused: {why}"),
         }
     }
@@ -115,10 +130,11 @@ impl Domain {
     /// the folder `iceoryx2` of the run directory if there is one, else in `/tmp/iceoryx2`.
     ///
     /// # Errors
-    /// [`ShareError::Refused`] when shared memory cannot be used.
+    /// [`ShareError::Full`] when there is too little of it, [`ShareError::Refused`] when it cannot be used.
     pub fn join(name: &str) -> Result<Domain, ShareError> {
         // First of all: reading the configuration would speak up already.
         set_log_level(LogLevel::Fatal);
+        room_for(0)?;
         let config = config()?;
         let name = NodeName::new(name).map_err(|_| ShareError::Name(name.into()))?;
         let node = NodeBuilder::new()
@@ -142,8 +158,12 @@ impl Domain {
         &self.node
     }
 
-    /// Removes what dead processes left in shared memory.
+    /// Removes what dead processes left in shared memory; puts it off while that is full, since iceoryx2 makes
+    /// files there to do so.
     pub fn clean(&self) {
+        if !room::for_upkeep() {
+            return;
+        }
         let _ = self.node.try_cleanup_dead_nodes();
     }
 
@@ -170,9 +190,11 @@ impl Domain {
     ///
     /// # Errors
     /// [`ShareError::Owned`] when a living process owns that name, [`ShareError::Incompatible`] when
-    /// readers of a former owner still hold pages of another layout, [`ShareError::Refused`] otherwise.
+    /// readers of a former owner still hold pages of another layout, [`ShareError::Full`] when there is no room,
+    /// [`ShareError::Refused`] otherwise.
     pub fn own(&self, name: &str, wires: usize) -> Result<OwnedPage, ShareError> {
         assert!(wires <= WIRES_MAX, "at most {WIRES_MAX} wires in a page");
+        room_for(wires)?;
         let service_name = service_name(name)?;
         self.clean();
         // The service outlives an owner for as long as readers of its page live, so it being there says
@@ -239,8 +261,9 @@ impl Domain {
     /// Maps the page that another process owns under `name`, read-only.
     ///
     /// # Errors
-    /// [`ShareError::Absent`], [`ShareError::Incompatible`], [`ShareError::Silent`].
+    /// [`ShareError::Absent`], [`ShareError::Incompatible`], [`ShareError::Silent`], [`ShareError::Full`].
     pub fn map(&self, name: &str) -> Result<Arc<Page>, ShareError> {
+        room_for(0)?;
         let service_name = service_name(name)?;
         self.clean();
         let service = self
@@ -277,6 +300,10 @@ impl Domain {
     }
 }
 
+fn room_for(wires: usize) -> Result<(), ShareError> {
+    room::for_newcomer(wires).map_err(|(free, needed)| ShareError::Full { free, needed })
+}
+
 /// The files in which iceoryx2 counts the nodes of a domain.
 fn counters(config: &Config) -> Vec<std::path::PathBuf> {
     let prefix = config.global.prefix.to_string();
@@ -285,7 +312,7 @@ fn counters(config: &Config) -> Vec<std::path::PathBuf> {
         let hash = rest.and_then(|rest| rest.strip_suffix(COUNTER_SUFFIX));
         hash.is_some_and(|hash| hash.len() == 40 && hash.bytes().all(|b| b.is_ascii_hexdigit()))
     };
-    let entries = std::fs::read_dir("/dev/shm").into_iter().flatten().flatten();
+    let entries = std::fs::read_dir(SHARED_MEMORY).into_iter().flatten().flatten();
     entries
         .filter(|entry| is_counter(&entry.file_name().to_string_lossy()))
         .map(|entry| entry.path())
@@ -313,8 +340,12 @@ impl OwnedPage {
         &self.page
     }
 
-    /// Hands the page to processes that came since the last call. Call it every few milliseconds.
+    /// Hands the page to processes that came since the last call, unless shared memory is full. Call it every few
+    /// milliseconds.
     pub fn serve(&self) {
+        if !room::for_upkeep() {
+            return;
+        }
         // A reader that is half gone is not our trouble; it is tried again at the next call.
         let _ = self.publisher.update_connections();
     }

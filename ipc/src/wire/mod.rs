@@ -11,6 +11,7 @@ pub mod joined;
 pub mod outlet;
 pub mod page;
 pub mod register;
+mod room;
 mod sync;
 
 pub use cell::{LAYOUT, Reading};

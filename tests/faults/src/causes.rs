@@ -87,13 +87,18 @@ pub(crate) static CAUSES: &[Cause] = &[
         layers::garbage,
     ),
     goes_on(
+        "layer-scribble",
+        "random bytes over a layer's own shared memory",
+        layers::scribbles,
+    ),
+    goes_on(
         "layer-churn",
         "eight processes attach and detach in a loop",
         layers::churn,
     ),
     goes_on(
         "manifest-garbage",
-        "random, endless, half, deep, silent control requests",
+        "random, endless, half, deep and silent callers",
         layers::manifest_garbage,
     ),
     halts("daemon-kill", "the daemon dies by SIGKILL", APART, |t| {
@@ -111,7 +116,7 @@ pub(crate) static CAUSES: &[Cause] = &[
     halts(
         "inside-panic",
         "a layer inside the daemon panics",
-        APART,
+        "the body's stale limit + 2 periods",
         lives::panics_inside,
     ),
     halts(
@@ -146,7 +151,7 @@ pub(crate) static CAUSES: &[Cause] = &[
     halts(
         "emergency-stop",
         "an operator's emergency stop",
-        "2 periods",
+        "2 periods + 1 until the caller is heard",
         lives::emergency_stop,
     ),
     halts(
@@ -164,6 +169,17 @@ pub(crate) static CAUSES: &[Cause] = &[
         "descriptors",
         "callers take every file descriptor",
         host::descriptors_used_up,
+    ),
+    goes_on(
+        "memory-limit",
+        "the daemon is near its memory limit (RLIMIT_AS), callers come",
+        host::memory_limited,
+    ),
+    halts(
+        "memory-out",
+        "the daemon may have no more memory (RLIMIT_AS), and ends",
+        APART,
+        host::memory_used_up,
     ),
     Cause {
         own_memory: true,

@@ -4,10 +4,15 @@
 
 use std::io::Write;
 use std::os::unix::net::UnixStream;
-use std::path::Path;
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
 
-use crate::stage::{CREATURE, LIFE_S, wait_for};
-use crate::trial::Trial;
+use ipc::clock;
+use ipc::control::{Connection, Reply, Request, Versions};
+use rustix::process::{Pid, Resource, Rlimit, Signal, prlimit};
+
+use crate::lives::{at_a_free_moment, body_halts};
+use crate::trial::{BODY, CREATURE, LIFE_S, Trial, leave_body};
 
 /// File descriptors that a daemon has which is to use them up: a few more than it needs to start.
 const DESCRIPTORS: &str = "64";
@@ -35,16 +40,117 @@ pub(crate) fn descriptors_used_up(trial: &mut Trial) -> Result<(), String> {
     trial.wait_until_free(&daemon)?;
     trial.goes_on_with(daemon, |trial| {
         let callers: Vec<UnixStream> = (0..200)
-            .map_while(|_| UnixStream::connect(trial.stage.socket()).ok())
+            .map_while(|_| UnixStream::connect(trial.stage.socket(CREATURE)).ok())
             .collect();
         trial
             .outcome
             .expect(callers.len() > 64, || format!("{} callers only", callers.len()));
-        std::thread::sleep(std::time::Duration::from_millis(200));
+        std::thread::sleep(Duration::from_millis(200));
         drop(callers);
         // The places come free again, and a layer finds one.
+        trial.wait_until_answered()?;
         trial.wander()?.leave()
     })
+}
+
+/// Callers that come while the daemon is at its limit: each is a conversation that it has to find room for.
+const CALLERS: usize = 40;
+
+/// Memory that is left to the daemon: what its recorder takes in a minute, less than forty callers take.
+const LEFT: u64 = 12 << 20;
+
+/// The daemon may have little more memory than it has: there are no threads for all callers.
+pub(crate) fn memory_limited(trial: &mut Trial) -> Result<(), String> {
+    trial.goes_on(|trial| {
+        let daemon = trial.daemon_pid()?;
+        limit(daemon, Some(address_space(daemon)? + LEFT))?;
+        let callers: Vec<Connection> = (0..CALLERS)
+            .filter_map(|_| greeting(trial.stage.socket(CREATURE)).ok())
+            .collect();
+        let mut layer = trial
+            .stage
+            .start(&trial.programs.wander, &["--creature", CREATURE])?;
+        std::thread::sleep(Duration::from_millis(300));
+        let answered = callers.into_iter().filter_map(|mut caller| {
+            let answer = caller.receive::<Reply>().ok()??;
+            matches!(answer, Reply::Welcome { .. }).then_some(())
+        });
+        let answered = answered.count();
+        trial.outcome.expect(answered < CALLERS, || {
+            format!("all {answered} callers were answered: the limit is none")
+        });
+        limit(daemon, None)?;
+        // Refused or kept waiting, it is gone; there is room again for the next one.
+        layer.end_by(Signal::KILL)?;
+        trial.wait_until_answered()?;
+        trial.wander()?.leave()
+    })
+}
+
+/// The daemon may have no more memory than it has: it ends at the next piece that it cannot do without.
+pub(crate) fn memory_used_up(trial: &mut Trial) -> Result<(), String> {
+    let mut body = trial.body()?;
+    let mut daemon = trial.daemon(&["--body", BODY])?;
+    let (observer, _) = at_a_free_moment(trial)?;
+    let pid = trial.daemon_pid()?;
+    let limited = clock::monotonic();
+    limit(pid, Some(0))?;
+    let (began, mut alive) = (Instant::now(), clock::monotonic());
+    let mut callers = Vec::new();
+    while !daemon.has_ended() && began.elapsed() < stage::PATIENCE {
+        alive = clock::monotonic();
+        // Each wants a place, and a thread.
+        callers.extend(greeting(trial.stage.socket(CREATURE)));
+        std::thread::sleep(Duration::from_millis(1));
+    }
+    drop(callers);
+    body_halts(trial, &observer, limited)?;
+    // A process that ends lets go of its socket before it is seen to have ended: the gate may close before.
+    let (closed, bound) = (
+        observer.closed_after(limited),
+        trial.limits.stale + trial.limits.period,
+    );
+    trial.halted(alive, closed.map(|at| at.max(alive)), bound);
+    let status = daemon.end()?;
+    trial
+        .outcome
+        .expect(!status.success(), || format!("without memory: {status}"));
+    drop(observer);
+    trial.restart()?;
+    leave_body(trial, &mut body);
+    Ok(())
+}
+
+/// A caller that has said hello, and waits for no answer.
+fn greeting(socket: PathBuf) -> std::io::Result<Connection> {
+    let stream = UnixStream::connect(socket)?;
+    stream.set_read_timeout(Some(Duration::from_millis(1)))?;
+    let mut connection = Connection::over(stream)?;
+    connection.send(&Request::Hello {
+        versions: Versions::ours(),
+        program: "faults".into(),
+    })?;
+    Ok(connection)
+}
+
+/// Bytes of address space that a process has.
+fn address_space(pid: Pid) -> Result<u64, String> {
+    let path = format!("/proc/{}/statm", pid.as_raw_nonzero());
+    let text = std::fs::read_to_string(&path).map_err(|e| format!("{path}: {e}"))?;
+    let pages = text.split_whitespace().next().and_then(|n| n.parse::<u64>().ok());
+    let pages = pages.ok_or_else(|| format!("{path} holds {text:?}"))?;
+    Ok(pages * rustix::param::page_size() as u64)
+}
+
+/// Limits the address space of a process; none takes the limit away.
+fn limit(pid: Pid, bytes: Option<u64>) -> Result<(), String> {
+    let limit = Rlimit {
+        current: bytes,
+        maximum: None,
+    };
+    prlimit(Some(pid), Resource::As, limit)
+        .map(drop)
+        .map_err(|e| format!("prlimit(RLIMIT_AS): {e}"))
 }
 
 /// Shared memory is full: on a file system that is this stage's alone (see the suite).
@@ -69,11 +175,16 @@ pub(crate) fn memory_full(trial: &mut Trial) -> Result<(), String> {
         let mut layer = trial
             .stage
             .start(&trial.programs.wander, &["--creature", CREATURE])?;
-        let said = wait_for("the layer says why", || !layer.said().is_empty());
-        trial.outcome.expect(said.is_ok(), || {
-            "a layer without shared memory says nothing".into()
+        let status = layer.end()?;
+        let refused = layer.said().iter().any(|l| l.contains("shared memory is full"));
+        trial.outcome.expect(status.code() == Some(1) && refused, || {
+            format!(
+                "a layer without shared memory ended with {status}: {:?}",
+                layer.said()
+            )
         });
-        layer.end_by(rustix::process::Signal::KILL)?;
+        // Long enough for everybody to have wanted to clean up after the dead.
+        std::thread::sleep(Duration::from_millis(2500));
         std::fs::remove_file(ballast).map_err(|e| format!("{}: {e}", ballast.display()))?;
         trial.wander()?.leave()
     })

@@ -23,7 +23,7 @@ use ipc::message::Kind;
 use ipc::wire::iceoryx::Domain;
 use ipc::wiring::{Declaration, Port, Source, check};
 
-use crate::stage::{BODY, CREATURE};
+use crate::trial::{BODY, CREATURE};
 
 /// How long an overrun lasts: two and a half periods of its layer.
 const OVERRUN: Span = Span::millis(25);
@@ -163,6 +163,7 @@ pub(crate) fn run(how: Break, seconds: f64) -> Result<(), String> {
         signal_hook::flag::register(signal, flag.clone()).map_err(|e| format!("signal {signal}: {e}"))?;
     }
     let _ = host::be_ordinary();
+    daemon::panicked::guard();
     let text = format!(
         "{}\n[[layer]]\nname = \"trial\"\nlevel = 1\nperiod = \"{PERIOD}\"\n{}\n[layer.modules]\n\
          tried = {{ kind = \"tried.break\" }}\n",
@@ -195,7 +196,7 @@ pub(crate) fn run(how: Break, seconds: f64) -> Result<(), String> {
     let mut teller = Teller::default();
     let mut left = false;
     // After the order to leave as well, until what came of it is told.
-    while clock::monotonic() < over && !(left && teller.told_shutdown) {
+    while clock::monotonic() < over && !(left && teller.told("shutdown")) {
         if said.swap(false, Ordering::Relaxed) {
             BROKEN.store(true, Ordering::Relaxed);
         }
@@ -204,6 +205,9 @@ pub(crate) fn run(how: Break, seconds: f64) -> Result<(), String> {
             running.shared.halt.halt(daemon::gate::Causes::SHUTDOWN);
         }
         teller.tell(&running.shared.halt);
+        if daemon::panicked::any() && teller.told("panic") {
+            running.leave_panicked();
+        }
         std::thread::sleep(Duration::from_millis(1));
     }
     drop(control);
@@ -211,20 +215,30 @@ pub(crate) fn run(how: Break, seconds: f64) -> Result<(), String> {
     Ok(())
 }
 
+/// Says a line at once: a thread that panics keeps standard error to itself until all of its message is written, and
+/// may be in the middle of a line.
+fn say(line: &str) {
+    let _ = rustix::io::write(rustix::stdio::stderr(), format!("\n{line}\n").as_bytes());
+}
+
 /// Says on standard error when the module broke, and when each cause of a halt began.
 #[derive(Debug, Default)]
 struct Teller {
     broke: bool,
     told: Vec<(&'static str, Time)>,
-    told_shutdown: bool,
 }
 
 impl Teller {
+    /// Whether it has told of a halt for that cause.
+    fn told(&self, cause: &str) -> bool {
+        self.told.iter().any(|(told, _)| *told == cause)
+    }
+
     fn tell(&mut self, halt: &daemon::halt::HaltChannel) {
         let broke = BROKE.load(Ordering::Relaxed);
         if broke != 0 && !self.broke {
             self.broke = true;
-            eprintln!("fault {broke}");
+            say(&format!("fault {broke}"));
         }
         for counted in halt.counts() {
             let name = counted.cause.names().first().copied().unwrap_or("");
@@ -233,8 +247,7 @@ impl Teller {
             }
             self.told.retain(|(told, _)| *told != name);
             self.told.push((name, counted.began));
-            self.told_shutdown |= name == "shutdown";
-            eprintln!("halt {name}: {}", counted.began.0);
+            say(&format!("halt {name}: {}", counted.began.0));
         }
     }
 }

@@ -9,10 +9,10 @@ use std::time::Duration;
 use ipc::control::{REQUEST_MAX, Reply, Request};
 use rustix::process::Signal;
 use serde_json::Value;
+use stage::{Stage, wait_for};
 
 use crate::rogue::Behaviour;
-use crate::stage::{Stage, wait_for};
-use crate::trial::Trial;
+use crate::trial::{CREATURE, Trial};
 
 /// Level 1 of Allen dies by `signal`.
 pub(crate) fn dies(trial: &mut Trial, signal: Signal) -> Result<(), String> {
@@ -40,7 +40,7 @@ pub(crate) fn freezes(trial: &mut Trial) -> Result<(), String> {
 pub(crate) fn ends(trial: &mut Trial, how: Behaviour) -> Result<(), String> {
     trial.goes_on(|trial| {
         let mut rogue = trial.rogue(how, how.name())?;
-        rogue.says("attached")?;
+        rogue.says("attached", 1)?;
         let status = rogue.end()?;
         trial
             .outcome
@@ -66,7 +66,7 @@ pub(crate) fn slow(trial: &mut Trial) -> Result<(), String> {
 pub(crate) fn floods(trial: &mut Trial) -> Result<(), String> {
     trial.goes_on(|trial| {
         let mut rogue = trial.rogue(Behaviour::Flood, "flood")?;
-        rogue.says("let go")?;
+        rogue.says("let go", 1)?;
         rogue.end()?;
         told(&trial.stage, &["policy breach: layer flood floods"])
     })
@@ -76,7 +76,7 @@ pub(crate) fn floods(trial: &mut Trial) -> Result<(), String> {
 pub(crate) fn garbage(trial: &mut Trial) -> Result<(), String> {
     trial.goes_on(|trial| {
         let mut rogue = trial.rogue(Behaviour::Garbage, "garbage")?;
-        rogue.says("attached")?;
+        rogue.says("attached", 1)?;
         wait_for("garbage is counted", || {
             tap_of(&trial.stage, "garbage")["faults"].as_u64() > Some(5)
         })?;
@@ -86,6 +86,19 @@ pub(crate) fn garbage(trial: &mut Trial) -> Result<(), String> {
         });
         told(&trial.stage, &["layer garbage", "messages that were none"])?;
         rogue.leave()
+    })
+}
+
+/// A layer that writes random bytes over its own shared memory, which the daemon reads: wrong sequence numbers,
+/// torn messages, stamps of all times.
+pub(crate) fn scribbles(trial: &mut Trial) -> Result<(), String> {
+    trial.goes_on(|trial| {
+        let mut rogue = trial.rogue(Behaviour::Scribble, "scribble")?;
+        rogue.says("attached", 1)?;
+        std::thread::sleep(Duration::from_millis(400));
+        rogue.end_by(Signal::KILL)?;
+        // It died, or was let go before: wrong numbers look like a flood.
+        told(&trial.stage, &["layer scribble (pid", "its taps run out"])
     })
 }
 
@@ -100,15 +113,19 @@ pub(crate) fn churn(trial: &mut Trial) -> Result<(), String> {
         let mut attached = 0;
         for rogue in &mut rogues {
             rogue.leave()?;
-            rogue.says("attached")?;
+            rogue.says("attached", 1)?;
             attached += rogue.number_after("attached ").unwrap_or(0);
         }
         trial.outcome.expect(attached > 16, || {
             format!("they were attached {attached} times only")
         });
-        let layers = || trial.stage.status()["layers"].as_array().map_or(0, Vec::len);
+        let layers = || {
+            trial.stage.status(CREATURE)["layers"]
+                .as_array()
+                .map_or(0, Vec::len)
+        };
         let gone = || {
-            let status = trial.stage.status();
+            let status = trial.stage.status(CREATURE);
             let layers = status["layers"].as_array();
             layers.is_some_and(|l| l.iter().all(|l| l["attached"] == false))
         };
@@ -116,50 +133,62 @@ pub(crate) fn churn(trial: &mut Trial) -> Result<(), String> {
     })
 }
 
-/// What is no manifest on the control socket: random bytes, a line without an end, half a document, an enormous
-/// length, depth, and callers who never say a word.
+/// What is no manifest on the control socket: random bytes, a line without an end, half a document, absurd numbers,
+/// depth, and more callers than there are places who never say a word and never go.
 pub(crate) fn manifest_garbage(trial: &mut Trial) -> Result<(), String> {
     trial.goes_on(|trial| {
         let mut silent = Vec::new();
-        for round in 0..24 {
-            let bytes: Vec<u8> = (0..512).map(|_| trial.draw() as u8).collect();
-            let Ok(mut stream) = UnixStream::connect(trial.stage.socket()) else {
+        for round in 0..100 {
+            let Ok(mut stream) = UnixStream::connect(trial.stage.socket(CREATURE)) else {
                 continue;
             };
             let _ = stream.set_write_timeout(Some(Duration::from_millis(200)));
             let _ = stream.set_read_timeout(Some(Duration::from_millis(20)));
-            let sent = match round % 6 {
-                0 => stream.write_all(&bytes).and_then(|()| stream.write_all(b"\n")),
-                1 => stream.write_all(&vec![b' '; 2 * REQUEST_MAX]),
-                2 => stream.write_all(br#"{"ask":"plug","layer":"half","level":"#),
-                3 => stream.write_all(br#"{"ask":"plug","layer":["x"],"level":1e999,"taps":-1}"#),
-                4 => stream.write_all(&[b'['; 100_000]),
-                _ => Ok(()),
-            };
-            // Refused half-way is as it should be; whatever it says is no matter.
-            let _ = sent.and_then(|()| stream.write_all(b"\n"));
-            let _ = stream.read(&mut [0; 256]);
-            if round % 6 == 5 {
+            let said = nonsense(trial, round);
+            // Refused half-way is as it should be; whatever it answers is no matter.
+            if said.is_empty() || stream.write_all(&said).is_err() || said.last() != Some(&b'\n') {
                 silent.push(stream);
+            } else {
+                let _ = stream.read(&mut [0; 256]);
             }
         }
-        let answered = matches!(trial.stage.ask(&Request::Status), Some(Reply::Status(_)));
+        let answered = matches!(
+            trial.stage.ask(CREATURE, &Request::Status),
+            Some(Reply::Status(_))
+        );
         trial
             .outcome
             .expect(answered, || "nobody answers a tool any more".into());
         drop(silent);
+        trial.wait_until_answered()?;
         trial.wander()?.leave()
     })
 }
 
+/// What the caller of this round says; most of them nothing.
+fn nonsense(trial: &mut Trial, round: usize) -> Vec<u8> {
+    match round {
+        0..4 => (0..512).map(|_| trial.draw() as u8).chain([b'\n']).collect(),
+        4..6 => vec![b' '; 2 * REQUEST_MAX],
+        6..10 => br#"{"ask":"plug","layer":"half","level":"#.to_vec(),
+        10..14 => br#"{"ask":"plug","layer":["x"],"level":1e999,"taps":-1}
+"#
+        .to_vec(),
+        14..18 => [vec![b'['; 100_000], vec![b'\n']].concat(),
+        _ => Vec::new(),
+    }
+}
+
 /// Waits until an event holds all of `parts`.
 fn told(stage: &Stage, parts: &[&str]) -> Result<(), String> {
-    wait_for(&format!("an event says {parts:?}"), || stage.happened(parts))
+    wait_for(&format!("an event says {parts:?}"), || {
+        stage.happened(CREATURE, parts)
+    })
 }
 
 /// The tap of layer `name` as the status shows it; null if there is none.
 fn tap_of(stage: &Stage, name: &str) -> Value {
-    let status = stage.status();
+    let status = stage.status(CREATURE);
     let from = format!("{name}.heading");
     let mut taps = status["taps"].as_array().into_iter().flatten();
     taps.find(|t| t["from"] == from.as_str())

@@ -5,11 +5,11 @@
 use ipc::clock::{self, Span, Time};
 use ipc::control::{Reply, Request};
 use rustix::process::Signal;
+use stage::{Player, wait_for};
 
 use crate::inside::{self, Break};
 use crate::observe::Observer;
-use crate::stage::{BODY, LIFE_S, Player, wait_for};
-use crate::trial::{Trial, leave_body};
+use crate::trial::{BODY, CREATURE, LIFE_S, Trial, leave_body};
 
 /// How long the kernel lets a real-time thread run without sleeping before it ends the process, with the ticks
 /// in which it counts.
@@ -40,7 +40,7 @@ pub(crate) fn daemon_freezes(trial: &mut Trial) -> Result<(), String> {
     wait_for("the body is free after the thaw", || observer.is_open())?;
     drop(observer);
     trial.wait_until_free(&daemon)?;
-    let status = trial.stage.status();
+    let status = trial.stage.status(CREATURE);
     trial.outcome.inspect(&status);
     trial.end(&mut daemon)?;
     leave_body(trial, &mut body);
@@ -65,9 +65,9 @@ pub(crate) fn body_lost(trial: &mut Trial, signal: Signal) -> Result<(), String>
     }
     trial.wait_until_free(&daemon)?;
     wait_for("the body tells how it looks", || {
-        trial.stage.status()["contacts"].is_object()
+        trial.stage.status(CREATURE)["contacts"].is_object()
     })?;
-    let status = trial.stage.status();
+    let status = trial.stage.status(CREATURE);
     trial.outcome.inspect(&status);
     trial.end(&mut daemon)?;
     leave_body(trial, &mut body);
@@ -79,7 +79,7 @@ pub(crate) fn body_lost(trial: &mut Trial, signal: Signal) -> Result<(), String>
 pub(crate) fn breaks_inside(trial: &mut Trial, how: Break, cause: &str, limit: Span) -> Result<(), String> {
     let mut body = trial.body()?;
     let mut daemon = on_trial(trial, how)?;
-    let best_effort = trial.stage.status()["mode"] == "best effort";
+    let best_effort = trial.stage.status(CREATURE)["mode"] == "best effort";
     let (observer, _) = at_a_free_moment(trial)?;
     let fault = broken(&daemon)?;
     halts(
@@ -100,7 +100,7 @@ pub(crate) fn breaks_inside(trial: &mut Trial, how: Break, cause: &str, limit: S
         trial.restart()?;
     } else {
         drop(observer);
-        let status = trial.stage.status();
+        let status = trial.stage.status(CREATURE);
         trial.outcome.inspect(&status);
         trial.end(&mut daemon)?;
     }
@@ -128,7 +128,7 @@ pub(crate) fn skips_inside(trial: &mut Trial) -> Result<(), String> {
     let daemon = on_trial(trial, Break::Skip)?;
     trial.goes_on_with(daemon, |trial| {
         let skipped = |trial: &Trial| {
-            let status = trial.stage.status();
+            let status = trial.stage.status(CREATURE);
             let mut layers = status["layers"].as_array().into_iter().flatten();
             layers
                 .find(|l| l["name"] == "trial")
@@ -138,7 +138,7 @@ pub(crate) fn skips_inside(trial: &mut Trial) -> Result<(), String> {
         trial.signal_daemon(Signal::USR1)?;
         wait_for("its beats are skipped", || skipped(trial) > before)?;
         wait_for("the body tells how it looks", || {
-            trial.stage.status()["contacts"].is_object()
+            trial.stage.status(CREATURE)["contacts"].is_object()
         })
     })?;
     leave_body(trial, &mut body);
@@ -153,6 +153,11 @@ pub(crate) fn panics_inside(trial: &mut Trial) -> Result<(), String> {
     let fault = broken(&daemon)?;
     body_halts(trial, &observer, fault)?;
     let status = daemon.end()?;
+    // Until the message is written the daemon lives, with its gate closed: commands of zero, which are fresh.
+    let told = closed_for(&daemon, "panic", fault);
+    let bound = trial.limits.stale + trial.limits.period + trial.limits.period;
+    let closed = told.into_iter().chain(observer.closed_after(fault)).min();
+    trial.halted(fault, closed, bound);
     trial
         .outcome
         .expect(!status.success(), || format!("after a panic: {status}"));
@@ -187,7 +192,10 @@ pub(crate) fn ends_in_mid_step(trial: &mut Trial) -> Result<(), String> {
 pub(crate) fn emergency_stop(trial: &mut Trial) -> Result<(), String> {
     let mut body = trial.body()?;
     let mut daemon = on_trial(trial, Break::Busy)?;
-    let mut connection = trial.stage.connect().ok_or("the daemon does not answer")?;
+    let mut connection = trial
+        .stage
+        .connect(CREATURE)
+        .ok_or("the daemon does not answer")?;
     let (observer, fault) = at_a_free_moment(trial)?;
     let answer = connection.ask(&Request::Halt).map_err(|e| e.to_string())?;
     trial.outcome.expect(answer == Reply::Done, || {
@@ -198,11 +206,12 @@ pub(crate) fn emergency_stop(trial: &mut Trial) -> Result<(), String> {
         &daemon,
         "emergency stop",
         fault,
-        Span(2 * trial.limits.period.0),
+        // Two periods as for any fault, and one for the thread that hears the caller, which is an ordinary one.
+        Span(3 * trial.limits.period.0),
     )?;
     trial.outcome.host_late = observer.late();
     drop(observer);
-    let status = trial.stage.status();
+    let status = trial.stage.status(CREATURE);
     trial.outcome.inspect(&status);
     trial.end(&mut daemon)?;
     leave_body(trial, &mut body);
@@ -215,13 +224,13 @@ fn on_trial(trial: &Trial, how: Break) -> Result<Player, String> {
     let daemon = trial.stage.start(&trial.programs.ourselves, &arguments)?;
     trial.wait_until_free(&daemon)?;
     wait_for("the body tells how it looks", || {
-        trial.stage.status()["contacts"].is_object()
+        trial.stage.status(CREATURE)["contacts"].is_object()
     })?;
     Ok(daemon)
 }
 
 /// An observer, and a moment at which the body's own gate is open.
-fn at_a_free_moment(trial: &mut Trial) -> Result<(Observer, Time), String> {
+pub(crate) fn at_a_free_moment(trial: &mut Trial) -> Result<(Observer, Time), String> {
     let observer = Observer::of_the_body()?;
     trial.wait_a_while();
     wait_for("the body's own gate is open", || observer.is_open())?;
@@ -232,7 +241,7 @@ fn at_a_free_moment(trial: &mut Trial) -> Result<(Observer, Time), String> {
 /// Breaks the module on trial; when it broke, by its own word.
 fn broken(daemon: &Player) -> Result<Time, String> {
     daemon.signal(Signal::USR1);
-    daemon.says("fault ")?;
+    daemon.says("fault ", 1)?;
     daemon
         .number_after("fault ")
         .map(Time)
@@ -240,7 +249,7 @@ fn broken(daemon: &Player) -> Result<Time, String> {
 }
 
 /// Waits for the body's own gate to close: within its stale limit and one of its periods.
-fn body_halts(trial: &mut Trial, observer: &Observer, fault: Time) -> Result<(), String> {
+pub(crate) fn body_halts(trial: &mut Trial, observer: &Observer, fault: Time) -> Result<(), String> {
     // A halt that does not come is missed, not an error.
     let _ = wait_for("the body's own gate closes", || {
         observer.closed_after(fault).is_some()
@@ -253,17 +262,20 @@ fn body_halts(trial: &mut Trial, observer: &Observer, fault: Time) -> Result<(),
 
 /// Waits for the daemon to halt for `cause`: it tells when the gate in its motor unit closed.
 fn halts(trial: &mut Trial, daemon: &Player, cause: &str, fault: Time, bound: Span) -> Result<(), String> {
-    let prefix = format!("halt {cause}: ");
-    let since = || {
-        let said = daemon.said();
-        let mut times = said
-            .iter()
-            .filter_map(|l| l.strip_prefix(&prefix)?.parse().ok().map(Time));
-        times.find(|at| *at >= fault)
-    };
+    let since = || closed_for(daemon, cause, fault);
     let _ = wait_for("the gate closes", || since().is_some());
     trial.halted(fault, since(), bound);
     Ok(())
+}
+
+/// When the gate in the motor unit closed for `cause` after `fault`, by the daemon's word.
+fn closed_for(daemon: &Player, cause: &str, fault: Time) -> Option<Time> {
+    let prefix = format!("halt {cause}: ");
+    let said = daemon.said();
+    let mut times = said
+        .iter()
+        .filter_map(|l| l.strip_prefix(&prefix)?.parse().ok().map(Time));
+    times.find(|at| *at >= fault)
 }
 
 /// How long a vital layer may be silent: its last beat was up to a period before the fault.

@@ -1,6 +1,7 @@
 //! `faults`: breaks real daemons, bodies and layer processes, and measures what comes of it.
 
 mod causes;
+mod draws;
 mod host;
 mod inside;
 mod layers;
@@ -9,7 +10,7 @@ mod observe;
 mod outcome;
 mod programs;
 mod rogue;
-mod stage;
+mod soak;
 mod suite;
 mod table;
 mod trial;
@@ -35,7 +36,8 @@ static ALLOCATOR: daemon::alloc::Counting = daemon::alloc::Counting;
     after_help = "Examples:\n  \
     faults                              every cause a few times, in less than two minutes\n  \
     faults --cause daemon-kill          one cause\n  \
-    faults --seeds 1000 --markdown      the long run, for the page on reliability\n\n\
+    faults --seeds 1000 --markdown      the long run, for the page on reliability\n  \
+    faults soak --minutes 60            what grows, and what breaks once in a thousand times\n\n\
     Status: 0 when all is as specified; 1 when a halt was missed or a bound broken; 2 for bad input."
 )]
 struct Options {
@@ -61,9 +63,19 @@ struct Options {
     part: Option<Part>,
 }
 
-/// Parts that this program plays when it started itself.
+/// The soak, and parts that this program plays when it started itself.
 #[derive(Subcommand, Debug)]
 enum Part {
+    /// Allen for minutes, while layers come, go, die and flood: does anything grow, or break once in a thousand times?
+    Soak(soak::Options),
+    /// The soak itself, on the stage that the environment names
+    #[command(hide = true)]
+    SoakInside {
+        #[arg(long)]
+        seconds: f64,
+        #[arg(long)]
+        seed: u64,
+    },
     /// One injection, on the stage that the environment names
     #[command(hide = true)]
     Inject {
@@ -78,6 +90,8 @@ enum Part {
         name: String,
         #[arg(long)]
         seconds: f64,
+        #[arg(long)]
+        seed: u64,
     },
     /// A daemon with a module that breaks
     #[command(hide = true)]
@@ -92,8 +106,19 @@ fn main() -> ExitCode {
     let options = Options::parse();
     let played = match &options.part {
         Some(Part::Inject { cause, seed }) => inject(cause, *seed),
-        Some(Part::Rogue { how, name, seconds }) => rogue::run(*how, name, *seconds),
+        Some(Part::Rogue {
+            how,
+            name,
+            seconds,
+            seed,
+        }) => rogue::run(*how, name, *seconds, *seed),
         Some(Part::Inside { how, seconds }) => inside::run(*how, *seconds),
+        Some(Part::SoakInside { seconds, seed }) => soak::inside(*seconds, *seed),
+        Some(Part::Soak(options)) => match soak::run(options) {
+            Ok(true) => Ok(()),
+            Ok(false) => return ExitCode::FAILURE,
+            Err(message) => Err(message),
+        },
         None => return run(&options),
     };
     match played {
@@ -174,12 +199,15 @@ fn chosen(names: &[String]) -> Result<Vec<&'static Cause>, String> {
 }
 
 fn try_all(options: &Options, programs: &Programs, chosen: &[&'static Cause]) -> Result<Table, String> {
+    let interrupted = suite::on_interrupt()?;
+    let goes_on = || !interrupted.load(std::sync::atomic::Ordering::Relaxed);
     let mut rows = Vec::new();
     let mut number = 0;
     for &cause in chosen {
         let began = std::time::Instant::now();
         let mut outcomes: Vec<(u64, Outcome)> = Vec::new();
-        for seed in options.from..options.from.saturating_add(options.seeds) {
+        let seeds = options.from..options.from.saturating_add(options.seeds);
+        for seed in seeds.take_while(|_| goes_on()) {
             number += 1;
             let outcome = suite::inject(programs, cause, seed, number)?;
             for broken in &outcome.broken {
@@ -197,7 +225,9 @@ fn try_all(options: &Options, programs: &Programs, chosen: &[&'static Cause]) ->
             outcomes.len(),
             began.elapsed().as_secs_f64()
         );
-        rows.push(Row { cause, outcomes });
+        if !outcomes.is_empty() {
+            rows.push(Row { cause, outcomes });
+        }
     }
     Ok(Table(rows))
 }

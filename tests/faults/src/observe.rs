@@ -15,7 +15,7 @@ use ipc::clock::{self, Span, Time};
 use ipc::wire::Reader;
 use ipc::wire::iceoryx::Domain;
 
-use crate::stage::BODY;
+use crate::trial::BODY;
 
 /// Time between two looks.
 const LOOK: Span = Span::micros(500);

@@ -8,7 +8,7 @@ use serde_json::Value;
 
 /// Lateness of a real-time thread from which on the host may be to blame for a halt: one such gap and a period
 /// or two of the creature's own make the 50 ms that the watchdog takes for a fault.
-const HOST_LATE: Span = Span::millis(15);
+pub(crate) const HOST_LATE: Span = Span::millis(15);
 
 /// What the specification says of a fault.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -109,7 +109,7 @@ impl Outcome {
 }
 
 /// How often causes other than a reflex and the start began.
-fn halts(status: &Value) -> u64 {
+pub(crate) fn halts(status: &Value) -> u64 {
     let counts = status["halt"]["counts"].as_array().into_iter().flatten();
     let others = counts.filter(|c| c["cause"] != "reflex" && c["cause"] != "start");
     others.filter_map(|c| c["count"].as_u64()).sum()

@@ -31,7 +31,7 @@ impl Programs {
             match path.exists() {
                 true => Ok(path),
                 false => Err(format!(
-                    "{} is missing; build it: cargo build{} -p daemon -p allen --bins",
+                    "{} is missing; build it: cargo build{} --workspace --bins",
                     path.display(),
                     if cfg!(debug_assertions) { "" } else { " --release" },
                 )),
@@ -40,13 +40,22 @@ impl Programs {
         Ok(Programs {
             subsumed: find("subsumed")?,
             body: find("subsumed-body")?,
-            wander: find("allen-wander")?,
+            // Where tests run us, the daemon's example of the same layer is built, and the layer's own package is not.
+            wander: newest(["allen-wander", "examples/wander"].map(|name| folder.join(name)))
+                .map_or_else(|| find("allen-wander"), Ok)?,
             ourselves,
         })
     }
 }
 
-/// Builds them where cargo runs us: `cargo run -p faults` alone builds only this program.
+/// The one of these files that was written last.
+fn newest(paths: [PathBuf; 2]) -> Option<PathBuf> {
+    let written = |path: &PathBuf| path.metadata().and_then(|m| m.modified()).ok();
+    paths.into_iter().filter(|p| p.exists()).max_by_key(written)
+}
+
+/// Builds them where cargo runs us: `cargo run -p faults` alone builds only this program. Together with it, or cargo
+/// would choose other features of what they share, and build all of that again.
 ///
 /// # Errors
 /// When they do not build.
@@ -55,7 +64,8 @@ pub(crate) fn build() -> Result<(), String> {
         return Ok(());
     };
     let mut command = Command::new(cargo);
-    command.args(["build", "--quiet", "-p", "daemon", "-p", "allen", "--bins"]);
+    // All of it: with some packages alone cargo would build their dependencies once more, for fewer features.
+    command.args(["build", "--quiet", "--workspace", "--bins"]);
     command.arg("--manifest-path");
     command.arg(concat!(env!("CARGO_MANIFEST_DIR"), "/../../Cargo.toml"));
     if !cfg!(debug_assertions) {

@@ -2,21 +2,24 @@
 //!
 //! Must never outlive its time, nor come in by another way than any layer does.
 
+use std::fs::File;
+use std::os::unix::fs::FileExt;
 use std::os::unix::net::UnixStream;
+use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 use clap::ValueEnum;
 use ipc::clock::{self, Span, Time};
-use ipc::control::{Connection, Plug, PlugTap, Reply, Request, Versions, socket_path, timed_out};
+use ipc::control::{Connection, Reply, Request, Versions, socket_path, timed_out};
 use ipc::message::{Kind, WORDS_MAX};
 use ipc::wire::Writer;
 use ipc::wire::iceoryx::{Domain, OwnedPage};
-use ipc::wiring::creature::How;
-use ipc::wiring::directory::Listed;
+use stage::announcement;
 
-use crate::stage::CREATURE;
+use crate::draws::Draws;
+use crate::trial::CREATURE;
 
 /// The period that it announces.
 const PERIOD: Span = Span::millis(20);
@@ -35,6 +38,8 @@ pub(crate) enum Behaviour {
     Flood,
     /// It writes what is no message.
     Garbage,
+    /// It writes random bytes over its own shared memory: sequence numbers, stamps, words.
+    Scribble,
     /// It comes and goes as fast as it can.
     Churn,
     /// It panics half a second after it was attached.
@@ -51,6 +56,7 @@ impl Behaviour {
             Behaviour::Slow => "slow",
             Behaviour::Flood => "flood",
             Behaviour::Garbage => "garbage",
+            Behaviour::Scribble => "scribble",
             Behaviour::Churn => "churn",
             Behaviour::Panic => "panic",
             Behaviour::Exit => "exit",
@@ -58,17 +64,19 @@ impl Behaviour {
     }
 }
 
-/// Misbehaves as layer `name` until it is let go, SIGTERM, or for `seconds`.
+/// Misbehaves as layer `name` until it is let go, SIGTERM, or for `seconds`; what is random about it comes from
+/// `seed`.
 ///
 /// # Errors
 /// When it is not let in at all.
-pub(crate) fn run(how: Behaviour, name: &str, seconds: f64) -> Result<(), String> {
+pub(crate) fn run(how: Behaviour, name: &str, seconds: f64, seed: u64) -> Result<(), String> {
     let leave = Arc::new(AtomicBool::new(false));
     signal_hook::flag::register(signal_hook::consts::SIGTERM, leave.clone())
         .map_err(|e| format!("SIGTERM: {e}"))?;
     let end = clock::monotonic() + Span::from_seconds(seconds).unwrap_or(Span::ZERO);
     let domain = Domain::join(name).map_err(|e| e.to_string())?;
     let owner = format!("{CREATURE}/{name}");
+    let others = segments();
     let owned = domain.own(&owner, 1).map_err(|e| e.to_string())?;
     let writer = owned
         .page()
@@ -76,10 +84,13 @@ pub(crate) fn run(how: Behaviour, name: &str, seconds: f64) -> Result<(), String
         .ok_or("the page has no cell")?;
     let goes_on = || !leave.load(Ordering::Relaxed) && clock::monotonic() < end;
     if how == Behaviour::Churn {
-        churn(&owned, name, &owner, goes_on);
+        churn(&owned, name, goes_on);
     } else {
-        let connection = attach(&owned, name, &owner)?;
+        let connection = attach(&owned, name)?;
         eprintln!("attached");
+        if how == Behaviour::Scribble {
+            return scribble(&others, seed, goes_on);
+        }
         misbehave(how, writer, connection, &owned, goes_on);
     }
     drop(owned);
@@ -88,10 +99,10 @@ pub(crate) fn run(how: Behaviour, name: &str, seconds: f64) -> Result<(), String
 }
 
 /// Comes and goes.
-fn churn(owned: &OwnedPage, name: &str, owner: &str, goes_on: impl Fn() -> bool) {
+fn churn(owned: &OwnedPage, name: &str, goes_on: impl Fn() -> bool) {
     let (mut attached, mut refused) = (0_u64, 0_u64);
     while goes_on() {
-        match attach(owned, name, owner) {
+        match attach(owned, name) {
             Ok(mut connection) => {
                 attached += 1;
                 // Every other time without a word.
@@ -104,6 +115,33 @@ fn churn(owned: &OwnedPage, name: &str, owner: &str, goes_on: impl Fn() -> bool)
     }
     eprintln!("refused {refused}");
     eprintln!("attached {attached}");
+}
+
+/// Writes random bytes over the segment that is not one of `others`.
+fn scribble(others: &[PathBuf], seed: u64, goes_on: impl Fn() -> bool) -> Result<(), String> {
+    let own = segments().into_iter().find(|s| !others.contains(s));
+    let own = own.ok_or("its segment is not found")?;
+    let trouble = |e: std::io::Error| format!("{}: {e}", own.display());
+    let segment = File::options().write(true).open(&own).map_err(trouble)?;
+    let words = segment.metadata().map_err(trouble)?.len() / 8;
+    let mut random = Draws(seed);
+    while goes_on() {
+        for _ in 0..64 {
+            let place = 8 * (random.draw() % words.max(1));
+            segment
+                .write_all_at(&random.draw().to_ne_bytes(), place)
+                .map_err(trouble)?;
+        }
+        std::thread::sleep(Duration::from_millis(1));
+    }
+    Ok(())
+}
+
+/// The segments of this stage in which wires lie.
+fn segments() -> Vec<PathBuf> {
+    let mut found = stage::Stage::inherited().map_or(Vec::new(), |s| s.segments());
+    found.retain(|s| s.extension().is_some_and(|e| e == "data"));
+    found
 }
 
 fn misbehave(
@@ -173,7 +211,7 @@ fn garbage(round: usize, now: Time) -> (Time, f64) {
 }
 
 /// Attaches the layer, sharing its page meanwhile.
-fn attach(owned: &OwnedPage, name: &str, owner: &str) -> Result<Connection, String> {
+fn attach(owned: &OwnedPage, name: &str) -> Result<Connection, String> {
     let stream = UnixStream::connect(socket_path(CREATURE)).map_err(|e| e.to_string())?;
     let io = |e: std::io::Error| e.to_string();
     let mut connection = Connection::over(stream).map_err(io)?;
@@ -182,35 +220,7 @@ fn attach(owned: &OwnedPage, name: &str, owner: &str) -> Result<Connection, Stri
         program: "rogue".into(),
     };
     connection.ask(&hello).map_err(io)?;
-    let port = format!("{name}.heading");
-    let plug = Plug {
-        layer: name.into(),
-        level: 1,
-        period: PERIOD,
-        pid: std::process::id(),
-        owner: owner.into(),
-        outputs: vec![Listed {
-            name: port.clone(),
-            kind: Kind::Polar,
-            unit: String::new(),
-            level: Some(1),
-            owner: owner.into(),
-            index: 0,
-            plug: 0,
-        }],
-        inputs: Vec::new(),
-        open_taps: Vec::new(),
-        open_reads: None,
-        neighbours: Vec::new(),
-        modules: Vec::new(),
-        wires: Vec::new(),
-        taps: vec![PlugTap {
-            how: How::Suppress,
-            from: port,
-            to: "turn.heading".into(),
-            time_constant: TAU,
-        }],
-    };
+    let plug = announcement(CREATURE, name, PERIOD, TAU);
     connection.send(&Request::Plug(plug)).map_err(io)?;
     // The daemon maps the page before it answers: somebody has to hand it over.
     connection

@@ -6,16 +6,21 @@
 //! ```
 //! Must never run two injections at once: they would be each other's load.
 
+use std::os::unix::process::CommandExt;
 use std::process::{Child, Command, Stdio};
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
+
+use signal_hook::consts::SIGINT;
+use stage::Stage;
 
 use crate::causes::Cause;
 use crate::outcome::Outcome;
 use crate::programs::Programs;
-use crate::stage::Stage;
 
 /// How long an injection may take in all before it is given up as hanging.
-const INJECTION_MAX: Duration = Duration::from_secs(80);
+const INJECTION_MAX: Duration = Duration::from_secs(150);
 
 /// How long dead and leaving processes may take to be gone from the stage.
 const GONE_MAX: Duration = Duration::from_secs(3);
@@ -33,7 +38,7 @@ pub(crate) fn inject(
     seed: u64,
     number: usize,
 ) -> Result<Outcome, String> {
-    let stage = Stage::new(number)?;
+    let stage = Stage::new(&format!("faults{}n{number}", std::process::id()))?;
     if cause.own_memory && !can_unshare() {
         return Ok(Outcome {
             skipped: Some("no mount namespace of its own (needs root)".into()),
@@ -51,11 +56,20 @@ pub(crate) fn inject(
         stage.command(&programs.ourselves)
     };
     command.args(["inject", cause.name, "--seed", &seed.to_string()]);
+    // Ctrl-C is for us: the injection under way comes to its end.
+    command.process_group(0);
     let child = command.stdout(Stdio::piped()).spawn();
     let child = child.map_err(|e| format!("{:?} does not start: {e}", command.get_program()))?;
     let mut outcome = finish(child);
     let left = left_behind(&stage);
-    outcome.expect(left.is_empty(), || format!("left behind: {left:?}"));
+    outcome.expect(left.is_empty(), || {
+        // A few say which process it was; a hundred say no more.
+        format!(
+            "{} files left behind, as {:?}",
+            left.len(),
+            &left[..left.len().min(3)]
+        )
+    });
     Ok(outcome)
 }
 
@@ -90,7 +104,7 @@ fn finish(mut child: Child) -> Outcome {
 }
 
 /// What remains on the stage, with time for those who leave to be gone.
-fn left_behind(stage: &Stage) -> Vec<String> {
+pub(crate) fn left_behind(stage: &Stage) -> Vec<String> {
     let began = Instant::now();
     loop {
         let files = stage.files();
@@ -99,6 +113,19 @@ fn left_behind(stage: &Stage) -> Vec<String> {
         }
         std::thread::sleep(Duration::from_millis(20));
     }
+}
+
+/// A flag that Ctrl-C sets: what is under way comes to an end, and what was measured is reported.
+///
+/// # Errors
+/// When the host refuses the handler.
+pub(crate) fn on_interrupt() -> Result<Arc<AtomicBool>, String> {
+    let flag = Arc::new(AtomicBool::new(false));
+    // A second one ends us on the spot.
+    let second = signal_hook::flag::register_conditional_shutdown(SIGINT, 130, flag.clone());
+    let first = signal_hook::flag::register(SIGINT, flag.clone());
+    second.and(first).map_err(|e| format!("SIGINT: {e}"))?;
+    Ok(flag)
 }
 
 fn can_unshare() -> bool {

@@ -5,12 +5,22 @@
 use ipc::clock::{self, Span, Time};
 use rustix::process::{Pid, Signal, kill_process};
 use serde_json::Value;
+use stage::{Player, Stage, wait_for};
 
+use crate::draws::Draws;
 use crate::observe::Observer;
 use crate::outcome::Outcome;
 use crate::programs::Programs;
 use crate::rogue::Behaviour;
-use crate::stage::{BODY, CREATURE, LIFE_S, Player, Stage, wait_for};
+
+/// Name of the creature of every stage.
+pub(crate) const CREATURE: &str = "tried";
+
+/// Name of its body, where that is a process of its own.
+pub(crate) const BODY: &str = "hall";
+
+/// How long a process of a stage lives at most: it ends by itself should nobody be left to end it.
+pub(crate) const LIFE_S: &str = "180";
 
 /// What of Allen's file and body a bound is made of.
 #[derive(Clone, Copy, Debug)]
@@ -28,7 +38,9 @@ pub(crate) struct Trial {
     pub(crate) stage: Stage,
     pub(crate) outcome: Outcome,
     pub(crate) limits: Limits,
-    random: u64,
+    random: Draws,
+    /// How long a process lives at most, in seconds.
+    life_s: String,
 }
 
 impl Trial {
@@ -44,22 +56,26 @@ impl Trial {
         let kind = daemon::body::find(body.declaration.name).ok_or("Allen's body is of no known kind")?;
         Ok(Trial {
             programs: Programs::beside_us()?,
-            stage: Stage::inherited()?,
+            stage: Stage::inherited().ok_or("this process is on no stage")?,
             outcome: Outcome::default(),
             limits: Limits {
                 period: body.period,
                 stale: kind.stale,
             },
-            random: seed,
+            random: Draws(seed),
+            life_s: LIFE_S.into(),
         })
     }
 
-    /// The next number that the seed decides (Steele and others 2014, SplitMix64).
+    /// The same with processes that live for `seconds` and a while.
+    pub(crate) fn living(mut self, seconds: f64) -> Trial {
+        self.life_s = (seconds + 180.0).to_string();
+        self
+    }
+
+    /// The next number that the seed decides.
     pub(crate) fn draw(&mut self) -> u64 {
-        self.random = self.random.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let z = (self.random ^ (self.random >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
+        self.random.draw()
     }
 
     /// Waits a while that the seed decides, so that the fault meets every phase of every period.
@@ -70,7 +86,7 @@ impl Trial {
 
     /// The daemon, its body free.
     pub(crate) fn daemon(&self, arguments: &[&str]) -> Result<Player, String> {
-        let mut all = vec!["--name", CREATURE, "--headless", "--seconds", LIFE_S];
+        let mut all = vec!["--name", CREATURE, "--headless", "--seconds", &self.life_s];
         all.extend(arguments);
         let player = self.stage.start(&self.programs.subsumed, &all)?;
         self.wait_until_free(&player)?;
@@ -81,8 +97,8 @@ impl Trial {
     pub(crate) fn body(&self) -> Result<Player, String> {
         let body = self
             .stage
-            .start(&self.programs.body, &["--name", BODY, "--seconds", LIFE_S])?;
-        body.says("waits for a daemon")?;
+            .start(&self.programs.body, &["--name", BODY, "--seconds", &self.life_s])?;
+        body.says("waits for a daemon", 1)?;
         Ok(body)
     }
 
@@ -91,22 +107,31 @@ impl Trial {
         let wander = self
             .stage
             .start(&self.programs.wander, &["--creature", CREATURE])?;
-        wait_for("wander is attached", || self.stage.has_layer("wander"))
+        wait_for("wander is attached", || self.stage.has_layer(CREATURE, "wander"))
             .map_err(|e| format!("{e}; it said {:?}", wander.said()))?;
         Ok(wander)
     }
 
     /// A layer process that misbehaves, as layer `name`.
-    pub(crate) fn rogue(&self, how: Behaviour, name: &str) -> Result<Player, String> {
-        let arguments = ["rogue", how.name(), name, "--seconds", "30"];
+    pub(crate) fn rogue(&mut self, how: Behaviour, name: &str) -> Result<Player, String> {
+        let seed = self.draw().to_string();
+        let arguments = ["rogue", how.name(), name, "--seconds", "30", "--seed", &seed];
         self.stage.start(&self.programs.ourselves, &arguments)
     }
 
     /// Waits until the daemon answers and its body is free.
     pub(crate) fn wait_until_free(&self, daemon: &Player) -> Result<(), String> {
-        wait_for("the body is free", || self.stage.is_free()).map_err(|e| {
-            let halt = self.stage.status()["halt"].to_string();
+        wait_for("the body is free", || self.stage.is_free(CREATURE)).map_err(|e| {
+            let halt = self.stage.status(CREATURE)["halt"].to_string();
             format!("{e}; it stands {halt}, the daemon said {:?}", daemon.said())
+        })
+    }
+
+    /// Waits until the daemon answers everybody again, twenty times in a row: those who took all places are gone, and
+    /// seen to be.
+    pub(crate) fn wait_until_answered(&self) -> Result<(), String> {
+        wait_for("everybody is answered", || {
+            (0..20).all(|_| self.stage.status(CREATURE).is_object())
         })
     }
 
@@ -119,7 +144,7 @@ impl Trial {
         let mut body = self.body()?;
         let daemon = self.daemon(&["--body", BODY])?;
         wait_for("the body tells how it looks", || {
-            self.stage.status()["contacts"].is_object()
+            self.stage.status(CREATURE)["contacts"].is_object()
         })?;
         self.goes_on_with(daemon, fault)?;
         leave_body(self, &mut body);
@@ -134,11 +159,14 @@ impl Trial {
     ) -> Result<(), String> {
         let observer = Observer::of_the_host()?;
         self.wait_a_while();
-        let before = self.stage.status();
-        fault(self)?;
+        let before = self.stage.status(CREATURE);
+        fault(self).map_err(|e| {
+            let said = daemon.said();
+            format!("{e}; the daemon last said {:?}", said.last())
+        })?;
         // Two looks of the daemon's own watcher: what the fault did is in its status.
         clock::sleep_until(clock::monotonic() + Span::millis(250));
-        let after = self.stage.status();
+        let after = self.stage.status(CREATURE);
         self.outcome.host_late = observer.late();
         self.outcome.inspect(&after);
         self.outcome.expect_no_halt(&before, &after);
@@ -147,8 +175,9 @@ impl Trial {
         self.outcome.expect(is > was + 10, || {
             format!("level 0 beat {was} times before, {is} after")
         });
-        self.outcome
-            .expect(self.stage.is_free(), || "the body does not stay free".into());
+        self.outcome.expect(self.stage.is_free(CREATURE), || {
+            "the body does not stay free".into()
+        });
         self.end(&mut daemon)
     }
 
@@ -173,19 +202,23 @@ impl Trial {
         let mut daemon = self.daemon(&["--body", BODY])?;
         self.outcome.restart = Some(clock::monotonic().since(began));
         wait_for("the body tells how it looks", || {
-            self.stage.status()["contacts"].is_object()
+            self.stage.status(CREATURE)["contacts"].is_object()
         })?;
-        self.outcome.inspect(&self.stage.status());
+        self.outcome.inspect(&self.stage.status(CREATURE));
         self.end(&mut daemon)
+    }
+
+    /// The daemon that answers.
+    pub(crate) fn daemon_pid(&self) -> Result<Pid, String> {
+        let pid = self.stage.status(CREATURE)["pid"].as_i64();
+        let pid = pid.and_then(|pid| i32::try_from(pid).ok());
+        pid.and_then(Pid::from_raw)
+            .ok_or_else(|| "the status names no process".into())
     }
 
     /// Sends the daemon that answers a signal.
     pub(crate) fn signal_daemon(&self, signal: Signal) -> Result<(), String> {
-        let pid = self.stage.status()["pid"]
-            .as_i64()
-            .and_then(|pid| i32::try_from(pid).ok());
-        let pid = pid.and_then(Pid::from_raw).ok_or("the status names no process")?;
-        kill_process(pid, signal).map_err(|e| format!("a signal: {e}"))
+        kill_process(self.daemon_pid()?, signal).map_err(|e| format!("a signal: {e}"))
     }
 }
 

@@ -113,10 +113,10 @@ impl House {
     /// How the world looks after its next turn; nothing if it does not turn.
     fn view(&self) -> Value {
         let mut views = self.views.lock().expect("nobody panics holding the views");
-        while views.pop().is_ok() {}
+        while views.take().is_some() {}
         self.view_wanted.store(true, Ordering::Relaxed);
         for _ in 0..100 {
-            if let Ok(view) = views.pop() {
+            if let Some(view) = views.take() {
                 return view;
             }
             std::thread::sleep(Duration::from_millis(1).max(Duration::from_nanos(self.period.0 / 10)));

@@ -36,6 +36,7 @@ use super::link::{CommandReaders, command_readers, world_cells, world_end};
 use super::{BodyKind, World, WorldEnd, turn};
 use crate::executor::{self, Beats, Plan, Schedule, host};
 use crate::gate::Causes;
+use crate::panicked;
 use crate::segment;
 
 mod house;
@@ -91,10 +92,27 @@ struct House {
     /// The creature whose daemon drives.
     driver: Mutex<Option<String>>,
     giver: Mutex<Giver<CommandReaders>>,
-    views: Mutex<Consumer<Value>>,
+    views: Mutex<Views>,
     view_wanted: Arc<AtomicBool>,
     leave: AtomicBool,
     callers: AtomicUsize,
+}
+
+/// How the world looks, as the turning thread tells it. What it made goes back to it: whoever else freed that would
+/// hold the lock of its memory, perhaps for long on a busy host.
+struct Views {
+    told: Consumer<Value>,
+    spent: Producer<Value>,
+}
+
+impl Views {
+    /// The newest, as a copy.
+    fn take(&mut self) -> Option<Value> {
+        let told = self.told.pop().ok()?;
+        let copy = told.clone();
+        let _room = self.spent.push(told);
+        Some(copy)
+    }
 }
 
 /// The world, as the turning thread has it.
@@ -103,6 +121,7 @@ struct Turning {
     link: WorldEnd,
     view_wanted: Arc<AtomicBool>,
     views: Producer<Value>,
+    spent: Consumer<Value>,
     leaving: Arc<AtomicBool>,
 }
 
@@ -114,7 +133,11 @@ impl Beats for Turning {
         if segment::cut() > 0 {
             self.link.close(Causes::MEMORY);
         }
+        if panicked::any() {
+            self.link.close(Causes::PANIC);
+        }
         turn(self.world.as_mut(), &mut self.link, clock::monotonic);
+        while self.spent.pop().is_ok() {}
         if self.view_wanted.swap(false, Ordering::Relaxed) {
             // Nobody takes it any more: then nobody misses it.
             let _ = self.views.push(self.world.view());
@@ -144,6 +167,7 @@ fn run(body: Body) -> Result<(), String> {
     if UnixStream::connect(body_socket(&name)).is_ok() {
         return Err("a process runs a body of this name already; stop it, or choose another --name".into());
     }
+    panicked::guard();
     segment::guard().map_err(|e| format!("a handler for SIGBUS: {e}"))?;
     let domain = Domain::join(&owner_of(&name)).map_err(|e| e.to_string())?;
     let owned = domain
@@ -152,6 +176,8 @@ fn run(body: Body) -> Result<(), String> {
     let page = owned.page().clone();
     let (link, giver) = world_end(kind, &page);
     let (view_in, view_out) = RingBuffer::new(1);
+    // One for each that a turn may tell, and one that came too late.
+    let (spent_in, spent_out) = RingBuffer::new(2);
     let leaving = Arc::new(AtomicBool::new(false));
     let house = Arc::new(House {
         name: name.clone(),
@@ -161,7 +187,10 @@ fn run(body: Body) -> Result<(), String> {
         floor: world.floor(),
         driver: Mutex::new(None),
         giver: Mutex::new(giver),
-        views: Mutex::new(view_out),
+        views: Mutex::new(Views {
+            told: view_out,
+            spent: spent_in,
+        }),
         view_wanted: Arc::new(AtomicBool::new(false)),
         leave: AtomicBool::new(false),
         callers: AtomicUsize::new(0),
@@ -171,6 +200,7 @@ fn run(body: Body) -> Result<(), String> {
         link,
         view_wanted: house.view_wanted.clone(),
         views: view_in,
+        spent: spent_out,
         leaving: leaving.clone(),
     };
     let listener = listen(&name).map_err(|e| format!("its socket: {e}"))?;
@@ -190,6 +220,10 @@ fn run(body: Body) -> Result<(), String> {
     watch(&name, &page, &signalled, limit);
     leaving.store(true, Ordering::Relaxed);
     std::thread::sleep(STANDSTILL);
+    if panicked::any() {
+        // Whoever panicked may be held up in saying so for as long as nobody reads it.
+        std::process::abort();
+    }
     stop.store(true, Ordering::Relaxed);
     thread.join();
     let _ = std::fs::remove_file(body_socket(&name));
@@ -235,6 +269,7 @@ fn watch(name: &str, page: &Arc<Page>, signalled: &AtomicBool, limit: Option<Dur
     while !signalled.load(Ordering::Relaxed)
         && limit.is_none_or(|limit| began.elapsed() < limit)
         && segment::cut() == 0
+        && !panicked::any()
     {
         if let Some(reading) = pulse.read() {
             let causes = Causes(u64::from(Pulse::unpack(&reading.words).causes));
