@@ -137,18 +137,13 @@ fn plug() -> Plug {
             index: 0,
             plug: 0,
         }],
-        inputs: Vec::new(),
-        open_taps: Vec::new(),
-        open_reads: None,
-        neighbours: Vec::new(),
-        modules: Vec::new(),
-        wires: Vec::new(),
         taps: vec![PlugTap {
             how: How::Suppress,
             from: "new.heading".into(),
             to: "turn.heading".into(),
             time_constant: Span::secs(1),
         }],
+        ..Plug::default()
     }
 }
 

@@ -144,18 +144,13 @@ pub(crate) fn bare(layer: &str, level: u8, from: &str, to: &str) -> Plug {
         pid: 1,
         owner: owner.clone(),
         outputs: vec![port(from, level)],
-        inputs: Vec::new(),
-        open_taps: Vec::new(),
-        open_reads: None,
-        neighbours: Vec::new(),
-        modules: Vec::new(),
-        wires: Vec::new(),
         taps: vec![PlugTap {
             how: How::Suppress,
             from: from.into(),
             to: to.into(),
             time_constant: TAU,
         }],
+        ..Plug::default()
     }
 }
 

@@ -97,7 +97,7 @@ pub enum Request {
 }
 
 /// A layer that wants to join.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Plug {
     /// The layer's name.
     pub layer: String,

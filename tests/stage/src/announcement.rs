@@ -29,17 +29,12 @@ pub fn announcement(creature: &str, layer: &str, period: Span, time_constant: Sp
             index: 0,
             plug: 0,
         }],
-        inputs: Vec::new(),
-        open_taps: Vec::new(),
-        open_reads: None,
-        neighbours: Vec::new(),
-        modules: Vec::new(),
-        wires: Vec::new(),
         taps: vec![PlugTap {
             how: How::Suppress,
             from: port,
             to: "turn.heading".into(),
             time_constant,
         }],
+        ..Plug::default()
     }
 }

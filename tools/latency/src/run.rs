@@ -121,10 +121,27 @@ pub fn run(asked: &Asked) -> Result<Outcome, String> {
         progress.tick();
         leave.load(Ordering::Relaxed)
     };
-    match asked.against {
-        Some(Reference::Cyclictest) => measure_pairs(asked, &setting, &looking, &progress, &mut outcome)?,
-        Some(Reference::Blackboard) => measure_across(asked, &setting, &looking, &progress, &mut outcome)?,
-        None => {}
+    if asked.against == Some(Reference::Blackboard) && asked.cpu == asked.other_cpu {
+        return Err("--against blackboard: expected two processors, one for each process".into());
+    }
+    for n in 0..asked.rounds {
+        let goes_on = match asked.against {
+            Some(Reference::Cyclictest) => {
+                round_of_pairs(asked, &setting, n, &looking, &progress, &mut outcome)?
+            }
+            Some(Reference::Blackboard) => {
+                progress.say(&format!(
+                    "round {} of {}: to another process",
+                    n + 1,
+                    asked.rounds
+                ));
+                outcome.keep_across(across::round(&setting, &looking)?, asked.round)
+            }
+            None => false,
+        };
+        if !goes_on {
+            break;
+        }
     }
     drop(load);
     progress.end();
@@ -132,48 +149,24 @@ pub fn run(asked: &Asked) -> Result<Outcome, String> {
     Ok(outcome)
 }
 
-fn measure_pairs(
+/// Every contest once; says whether there is time for the next round.
+fn round_of_pairs(
     asked: &Asked,
     setting: &pair::Setting,
+    n: usize,
     looking: &dyn Fn() -> bool,
     progress: &Progress,
     outcome: &mut Outcome,
-) -> Result<(), String> {
-    for n in 0..asked.rounds {
-        for contest in CONTESTS {
-            let (n_shown, ours) = (n + 1, contest.sides().0);
-            progress.say(&format!("round {n_shown} of {}: {ours}", asked.rounds));
-            match pair::round(setting, contest, n % 2 == 1, looking).map_err(|e| e.to_string())? {
-                Some(round) => outcome.keep(round, asked.round),
-                None => return Ok(()),
-            }
+) -> Result<bool, String> {
+    for contest in CONTESTS {
+        let (n_shown, ours) = (n + 1, contest.sides().0);
+        progress.say(&format!("round {n_shown} of {}: {ours}", asked.rounds));
+        match pair::round(setting, contest, n % 2 == 1, looking).map_err(|e| e.to_string())? {
+            Some(round) => outcome.keep(round, asked.round),
+            None => return Ok(false),
         }
     }
-    Ok(())
-}
-
-fn measure_across(
-    asked: &Asked,
-    setting: &pair::Setting,
-    looking: &dyn Fn() -> bool,
-    progress: &Progress,
-    outcome: &mut Outcome,
-) -> Result<(), String> {
-    if asked.cpu == asked.other_cpu {
-        return Err("--against blackboard: expected two processors, one for each process".into());
-    }
-    for n in 0..asked.rounds {
-        progress.say(&format!(
-            "round {} of {}: to another process",
-            n + 1,
-            asked.rounds
-        ));
-        match across::round(setting, looking)? {
-            Some(round) => outcome.keep_across(round, asked.round),
-            None => return Ok(()),
-        }
-    }
-    Ok(())
+    Ok(true)
 }
 
 fn measure_creature(
@@ -253,13 +246,16 @@ impl Outcome {
         now.saturating_sub(length)
     }
 
-    fn keep_across(&mut self, round: across::Round, length: Duration) {
+    /// Keeps a round across processes; says whether it was one.
+    fn keep_across(&mut self, round: Option<across::Round>, length: Duration) -> bool {
+        let Some(round) = round else { return false };
         let began = self.since_began(length);
         for (means, ages) in across::MEANS.iter().zip(&round) {
             self.track(means.name(), "to-process")
                 .add(began, length, ages.clone());
         }
         self.across.push(round);
+        true
     }
 
     fn keep(&mut self, round: Round, length: Duration) {

@@ -43,10 +43,12 @@ impl BehaviourLayer<TruckCreature> for CallBeforeLeaving {
         if self.done {
             return;
         }
-        if let Some(corner) = self.to_call.next_unknown(&self.notebook, body.corner()) {
-            proposal.inhibit_all_below();
-            add(proposal, TruckAction::Phone(corner));
-            return;
+        while let Some(corner) = self.to_call.next_unknown(&self.notebook) {
+            if corner != body.corner() {
+                proposal.inhibit_all_below();
+                add(proposal, TruckAction::Phone(corner));
+                return;
+            }
         }
         self.done = true;
     }

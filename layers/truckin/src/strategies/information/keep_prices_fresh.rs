@@ -43,11 +43,11 @@ impl KeepPricesFresh {
             .map(|(_, corner)| corner)
     }
 
-    fn missing_kind_call(&mut self, here: Corner) -> Option<Corner> {
+    fn missing_kind_call(&mut self) -> Option<Corner> {
         if self.notebook.knows_every_kind() {
             return None;
         }
-        self.to_call.next_unknown(&self.notebook, here)
+        self.to_call.next_unknown(&self.notebook)
     }
 }
 
@@ -61,7 +61,7 @@ impl BehaviourLayer<TruckCreature> for KeepPricesFresh {
         if body.capital_cents() < THRIFT_CENTS {
             return;
         }
-        let call = self.missing_kind_call(body.corner()).or_else(|| {
+        let call = self.missing_kind_call().or_else(|| {
             let due = now >= self.next_call_minute;
             self.next_call_minute = if due {
                 now + BETWEEN_CALLS_MINUTES

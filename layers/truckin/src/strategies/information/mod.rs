@@ -33,11 +33,11 @@ impl CallList {
         CallList(corners)
     }
 
-    /// The next corner that is not `here` and of which nothing is known.
-    fn next_unknown(&mut self, notebook: &Notebook, here: Corner) -> Option<Corner> {
+    /// The next corner of which nothing is known.
+    fn next_unknown(&mut self, notebook: &Notebook) -> Option<Corner> {
         loop {
             let corner = self.0.pop()?;
-            if corner != here && notebook.about(corner).is_none() {
+            if notebook.about(corner).is_none() {
                 return Some(corner);
             }
         }
