@@ -22,7 +22,11 @@ pub const RING_BYTES_MAX: usize = 64 << 20;
 pub struct Ring {
     span: Span,
     bytes_max: usize,
-    items: VecDeque<Item>,
+    /// Each with the moment at which it was taken in.
+    items: VecDeque<(Time, Item)>,
+    /// The newest moment that the daemon itself has told. What an attached layer stamps may lie anywhere: a message
+    /// from the future would otherwise hold up everything behind it.
+    now: Time,
     bytes: usize,
     past: Past,
 }
@@ -43,7 +47,20 @@ struct SourceBase {
     /// Of each register, the source and outlet whose wire it takes.
     feeds: Vec<Option<(usize, usize)>>,
     taps: BTreeMap<u16, (Held, Fate)>,
+    /// Whose each tap is that was joined while the source beat.
+    joined: BTreeMap<u16, u32>,
     begun: bool,
+}
+
+impl SourceBase {
+    /// Lets go of what the taps of a layer said that has left.
+    fn forget(&mut self, plug: u32) {
+        let theirs = self.joined.iter().filter(|(_, whose)| **whose == plug);
+        for tap in theirs.map(|(tap, _)| *tap).collect::<Vec<u16>>() {
+            self.taps.remove(&tap);
+            self.joined.remove(&tap);
+        }
+    }
 }
 
 impl Ring {
@@ -67,6 +84,7 @@ impl Ring {
                     .map(|port| manifest.writer_of(manifest.wire_into(&port.name)?))
                     .collect(),
                 taps: BTreeMap::new(),
+                joined: BTreeMap::new(),
                 begun: false,
             });
         let plugs = manifest.plugs.iter();
@@ -81,6 +99,7 @@ impl Ring {
             span,
             bytes_max,
             items: VecDeque::new(),
+            now: Time::ZERO,
             bytes: 0,
             past,
         }
@@ -88,16 +107,18 @@ impl Ring {
 
     /// Takes in an item, and lets go of what is too old.
     pub fn push(&mut self, item: Item) {
-        let now = item.time();
+        if !matches!(item, Item::Wire { .. }) {
+            self.now = self.now.max(item.time());
+        }
         self.bytes += item.bytes();
-        self.items.push_back(item);
-        while let Some(oldest) = self.items.front() {
-            let old = now.since(oldest.time()) > self.span;
+        self.items.push_back((self.now, item));
+        while let Some((taken_in, oldest)) = self.items.front() {
+            let old = self.now.since(*taken_in) > self.span;
             if !old && self.bytes <= self.bytes_max {
                 break;
             }
             self.bytes -= oldest.bytes();
-            if let Some(item) = self.items.pop_front() {
+            if let Some((_, item)) = self.items.pop_front() {
                 self.past.fold(&item);
             }
         }
@@ -105,20 +126,21 @@ impl Ring {
 
     /// Everything in it, after what was before.
     pub fn snapshot(&self) -> Vec<Item> {
-        self.past.items().chain(self.items.iter().cloned()).collect()
+        let items = self.items.iter().map(|(_, item)| item.clone());
+        self.past.items().chain(items).collect()
     }
 
     /// What every source holds now: how a recording begins that has no use for the past.
     pub fn state(&self) -> Vec<Item> {
         let mut past = self.past.clone();
-        self.items.iter().for_each(|item| past.fold(item));
+        self.items.iter().for_each(|(_, item)| past.fold(item));
         past.items().collect()
     }
 
     /// How long ago its oldest item happened, counted from its newest.
     pub fn covers(&self) -> Span {
         match (self.items.front(), self.items.back()) {
-            (Some(first), Some(last)) => last.time().since(first.time()),
+            (Some((first, _)), Some((last, _))) => last.since(*first),
             _ => Span::ZERO,
         }
     }
@@ -152,6 +174,9 @@ impl Past {
             Item::Unplugged(_, number) => {
                 self.plugs.remove(number);
                 self.wires.retain(|(plug, _), _| plug != number);
+                for source in &mut self.sources {
+                    source.forget(*number);
+                }
             }
             Item::Wire { plug, index, .. } => {
                 self.wires.insert((*plug, *index), item.clone());
@@ -192,7 +217,10 @@ impl Past {
                 Entry::Passed { slot, words } => {
                     self.sources[source].base.passed[slot] = Some(held(0, beat.commit, words));
                 }
-                Entry::Joined { .. } | Entry::Released { .. } | Entry::Dropped { .. } => {}
+                Entry::Joined { tap, plug, .. } => {
+                    self.sources[source].joined.insert(tap, plug);
+                }
+                Entry::Released { .. } | Entry::Dropped { .. } => {}
             }
         }
     }
@@ -206,5 +234,52 @@ impl Past {
             stamp: Time::ZERO,
             words: None,
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use ipc::message::{Kind, WORDS_MAX};
+    use ipc::wire::Reading;
+
+    use super::*;
+    use crate::manifest::FORMAT;
+
+    fn nobody() -> Manifest {
+        Manifest {
+            format: FORMAT,
+            creature: "none".into(),
+            program: "test".into(),
+            seed: 0,
+            began_ns: 0,
+            offset_ns: 0,
+            causes: Vec::new(),
+            sources: Vec::new(),
+            taps: Vec::new(),
+            wires: Vec::new(),
+            plugs: Vec::new(),
+            file: String::new(),
+        }
+    }
+
+    #[test]
+    fn a_message_from_the_future_holds_nothing_up() {
+        let mut ring = Ring::new(&nobody(), Span::secs(1), usize::MAX);
+        let second = |n: u64| Time(n * 1_000_000_000);
+        let gone = |n: u64| Item::Unplugged(second(n), 7);
+        ring.push(gone(0));
+        ring.push(Item::Wire {
+            plug: 7,
+            index: 0,
+            kind: Kind::Number,
+            reading: Box::new(Reading {
+                number: 1,
+                stamp: second(1_000_000),
+                words: [0.0; WORDS_MAX],
+            }),
+        });
+        (1..100).for_each(|n| ring.push(gone(n)));
+        assert_eq!(ring.items.len(), 2, "what is older than a second is gone");
+        assert_eq!(ring.covers(), Span::secs(1));
     }
 }
