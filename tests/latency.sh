@@ -44,7 +44,7 @@ command -v cyclictest >/dev/null || fail "cyclictest is not installed (Debian: a
 lab --seconds 12 --against cyclictest --rounds 4 --round-seconds 2 --gate --out "$out/idle" || fail "the gate, idle"
 lab --seconds 12 --load churn --gate --out "$out/churn" || fail "the gate, with churn"
 if [ "$(nproc)" -gt 1 ]; then
-  lab --seconds 0 --against blackboard --rounds 4 --round-seconds 2 --gate --out "$out/across" || fail "the gate, across processes"
+  lab --seconds 0 --against blackboard --rounds 4 --round-seconds 3 --gate --out "$out/across" || fail "the gate, across processes"
 else
   echo "skipped: messages to another process (one processor)"
 fi

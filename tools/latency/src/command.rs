@@ -202,7 +202,7 @@ fn summary(
         "period_ns": asked.period.0, "spin_ns": asked.spin.0,
         "creature_wakes_by": if asked.creature_spins { "spin" } else { "sleep" },
         "rounds": outcome.rounds_of(Contest::Sleep).count().max(outcome.across.len()), "round_s": asked.round.as_secs_f64(),
-        "interrupted": outcome.interrupted, "planted": plant,
+        "unheard_rounds": outcome.unheard, "interrupted": outcome.interrupted, "planted": plant,
         "refusals": outcome.refusals, "threads": outcome.kept, "allocations": allocations,
         "churn_events": outcome.churn_events, "compared": compared, "faults": faults,
         "tracks": outcome.tracks.iter().map(report::describe).collect::<Vec<_>>(),
@@ -264,6 +264,13 @@ fn table(
     let _ = writeln!(out, "\nallocations on real-time threads: {allocations}");
     if outcome.churn_events > 0 {
         let _ = writeln!(out, "came, left or were killed: {}", outcome.churn_events);
+    }
+    if outcome.unheard > 0 {
+        let _ = writeln!(
+            out,
+            "**not measured**: {} rounds whose listener had its processor too rarely: this host is busy",
+            outcome.unheard
+        );
     }
     for refusal in &outcome.refusals {
         let _ = writeln!(out, "**best effort**: {refusal}");

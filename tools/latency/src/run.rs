@@ -10,7 +10,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use ipc::clock::Span;
 use ipc::wiring::creature::Wake;
 
-use crate::across;
+use crate::across::{self, Heard};
 use crate::churn::Churn;
 use crate::command::Reference;
 use crate::creature::{self, Alive, Kept};
@@ -61,6 +61,8 @@ pub struct Outcome {
     pub rounds: Vec<Round>,
     /// The rounds across processes.
     pub across: Vec<across::Round>,
+    /// Rounds across processes whose listener was kept from listening.
+    pub unheard: usize,
     /// Step times of quiet and churning intervals in turn, beginning with a quiet one: (churning, track, interval).
     pub churning: Vec<bool>,
     /// Who came, left or was killed.
@@ -99,6 +101,7 @@ pub fn run(asked: &Asked) -> Result<Outcome, String> {
         kept: Vec::new(),
         rounds: Vec::new(),
         across: Vec::new(),
+        unheard: 0,
         churning: Vec::new(),
         churn_events: 0,
         refusals: Vec::new(),
@@ -135,7 +138,12 @@ pub fn run(asked: &Asked) -> Result<Outcome, String> {
                     n + 1,
                     asked.rounds
                 ));
-                outcome.keep_across(across::round(&setting, &looking)?, asked.round)
+                match across::round(&setting, &looking)? {
+                    Heard::All(round) => outcome.keep_across(*round, asked.round),
+                    Heard::TooLittle => outcome.unheard += 1,
+                    Heard::Left => break,
+                }
+                true
             }
             None => false,
         };
@@ -246,16 +254,13 @@ impl Outcome {
         now.saturating_sub(length)
     }
 
-    /// Keeps a round across processes; says whether it was one.
-    fn keep_across(&mut self, round: Option<across::Round>, length: Duration) -> bool {
-        let Some(round) = round else { return false };
+    fn keep_across(&mut self, round: across::Round, length: Duration) {
         let began = self.since_began(length);
         for (means, ages) in across::MEANS.iter().zip(&round) {
             self.track(means.name(), "to-process")
                 .add(began, length, ages.clone());
         }
         self.across.push(round);
-        true
     }
 
     fn keep(&mut self, round: Round, length: Duration) {
