@@ -105,16 +105,22 @@ fn across(outcome: &Outcome) -> Vec<Compared> {
                 Ratio::of(&each.collect::<Vec<f64>>())
             };
             let control = ratios(Means::WireAgain);
-            compared.extend(ratios(other).map(|ratio| Compared {
-                what: format!("message to another process, a wire / {name}"),
-                quantile,
-                ratio,
-                limit: judged.then(|| gate::limit(*base, control.as_ref())),
+            compared.extend(ratios(other).map(|ratio| {
+                Compared {
+                    what: format!("message to another process, a wire / {name}"),
+                    quantile,
+                    ratio,
+                    limit: (judged && outcome.across.len() >= ROUNDS_MIN)
+                        .then(|| gate::limit(*base, control.as_ref())),
+                }
             }));
         }
     }
     compared
 }
+
+/// Fewest rounds across processes that are judged: with fewer their spread says nothing.
+const ROUNDS_MIN: usize = 3;
 
 /// Step times of churning intervals against the quiet ones before them, over all layers.
 fn churn(outcome: &Outcome) -> Vec<Compared> {
