@@ -36,6 +36,15 @@ impl Time {
     pub fn seconds(self) -> f64 {
         self.0 as f64 * 1e-9
     }
+    /// The first moment of the grid of `period` through this one that is not before `now`: this one itself if it
+    /// is still to come.
+    ///
+    /// # Panics
+    /// When the period is zero.
+    pub fn on_grid(self, period: Span, now: Time) -> Time {
+        let missed = now.since(self).0.div_ceil(period.0);
+        self + Span(missed * period.0)
+    }
 }
 
 impl Span {
@@ -180,6 +189,13 @@ pub fn sleep_until(deadline: Time) {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_grid_goes_on_from_where_it_is() {
+        let (first, period) = (Time(5), Span(10));
+        let on = [0, 5, 6, 15, 16, 25].map(|now| first.on_grid(period, Time(now)).0);
+        assert_eq!(on, [5, 5, 15, 15, 25, 25]);
+    }
 
     #[test]
     fn spans_read_what_they_write() {

@@ -55,11 +55,9 @@ struct SourceBase {
 impl SourceBase {
     /// Lets go of what the taps of a layer said that has left.
     fn forget(&mut self, plug: u32) {
-        let theirs = self.joined.iter().filter(|(_, whose)| **whose == plug);
-        for tap in theirs.map(|(tap, _)| *tap).collect::<Vec<u16>>() {
-            self.taps.remove(&tap);
-            self.joined.remove(&tap);
-        }
+        let joined = &self.joined;
+        self.taps.retain(|tap, _| joined.get(tap) != Some(&plug));
+        self.joined.retain(|_, whose| *whose != plug);
     }
 }
 

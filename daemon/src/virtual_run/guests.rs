@@ -10,7 +10,7 @@ use afsm::assemble::{FiledTap, Wires, assemble};
 use afsm::layer::{Command, Hand};
 use afsm::places::Places;
 use afsm::process::plug_request;
-use ipc::clock::{Span, Time};
+use ipc::clock::Time;
 use ipc::control::{Plug, PlugTap};
 use ipc::wire::{Page, Reader, TapGauge};
 use ipc::wiring::creature::{Creature, How, PortName};
@@ -290,10 +290,4 @@ fn give(hand: &mut Hand, command: Command) {
         hand.commands.push(command).is_ok(),
         "every command is taken up at once"
     );
-}
-
-/// The first beat of the grid through `first` that is not before `now`.
-pub(super) fn beat_from(first: Time, period: Span, now: Time) -> Time {
-    let missed = now.since(first).0.div_ceil(period.0);
-    first + Span(missed * period.0)
 }

@@ -34,7 +34,7 @@ pub use guests::{Guest, Manifest};
 pub use log::{Log, Message};
 pub use views::TapView;
 
-use guests::{Guests, beat_from};
+use guests::Guests;
 
 /// The moment at which virtual time begins: not zero, so that nothing is mistaken for never.
 pub const BEGIN: Time = Time(1_000_000_000);
@@ -192,7 +192,7 @@ impl VirtualRun {
     pub fn restart(&mut self, station: usize) {
         let Station { spec, running, .. } = &mut self.machine.stations[station];
         running.restart();
-        self.due[station] = Some(beat_from(BEGIN + spec.phase, spec.period, self.now));
+        self.due[station] = Some((BEGIN + spec.phase).on_grid(spec.period, self.now));
     }
 
     /// When the next beat is due.
@@ -247,7 +247,7 @@ impl VirtualRun {
                 Stimulus::Freeze(name) => self.set_due(name, |_, _| None),
                 Stimulus::Thaw(name) => {
                     let now = self.now;
-                    self.set_due(name, |first, period| Some(beat_from(first, period, now)));
+                    self.set_due(name, |first, period| Some(first.on_grid(period, now)));
                 }
                 Stimulus::Halt => self.machine.halt.halt(Causes::EMERGENCY),
                 Stimulus::Reset => {

@@ -88,6 +88,9 @@ pub fn run(asked: &Asked) -> Result<Outcome, String> {
     for signal in [signal_hook::consts::SIGINT, signal_hook::consts::SIGTERM] {
         signal_hook::flag::register(signal, leave.clone()).map_err(|e| e.to_string())?;
     }
+    if asked.against == Some(Reference::Blackboard) && asked.cpu == asked.other_cpu {
+        return Err("--against blackboard: expected two processors, one for each process".into());
+    }
     let contests = match asked.against {
         Some(Reference::Cyclictest) => CONTESTS.len(),
         Some(Reference::Blackboard) => 1,
@@ -124,26 +127,16 @@ pub fn run(asked: &Asked) -> Result<Outcome, String> {
         progress.tick();
         leave.load(Ordering::Relaxed)
     };
-    if asked.against == Some(Reference::Blackboard) && asked.cpu == asked.other_cpu {
-        return Err("--against blackboard: expected two processors, one for each process".into());
-    }
     for n in 0..asked.rounds {
+        let round = format!("round {} of {}", n + 1, asked.rounds);
+        let say = |what: &str| progress.say(&format!("{round}: {what}"));
         let goes_on = match asked.against {
             Some(Reference::Cyclictest) => {
-                round_of_pairs(asked, &setting, n, &looking, &progress, &mut outcome)?
+                round_of_pairs(&setting, n % 2 == 1, &looking, &say, &mut outcome)?
             }
             Some(Reference::Blackboard) => {
-                progress.say(&format!(
-                    "round {} of {}: to another process",
-                    n + 1,
-                    asked.rounds
-                ));
-                match across::round(&setting, &looking)? {
-                    Heard::All(round) => outcome.keep_across(*round, asked.round),
-                    Heard::TooLittle => outcome.unheard += 1,
-                    Heard::Left => break,
-                }
-                true
+                say("to another process");
+                outcome.keep_across(across::round(&setting, &looking)?, asked.round)
             }
             None => false,
         };
@@ -159,18 +152,16 @@ pub fn run(asked: &Asked) -> Result<Outcome, String> {
 
 /// Every contest once; says whether there is time for the next round.
 fn round_of_pairs(
-    asked: &Asked,
     setting: &pair::Setting,
-    n: usize,
+    swapped: bool,
     looking: &dyn Fn() -> bool,
-    progress: &Progress,
+    say: &dyn Fn(&str),
     outcome: &mut Outcome,
 ) -> Result<bool, String> {
     for contest in CONTESTS {
-        let (n_shown, ours) = (n + 1, contest.sides().0);
-        progress.say(&format!("round {n_shown} of {}: {ours}", asked.rounds));
-        match pair::round(setting, contest, n % 2 == 1, looking).map_err(|e| e.to_string())? {
-            Some(round) => outcome.keep(round, asked.round),
+        say(contest.sides().0);
+        match pair::round(setting, contest, swapped, looking).map_err(|e| e.to_string())? {
+            Some(round) => outcome.keep(round, setting.round),
             None => return Ok(false),
         }
     }
@@ -254,13 +245,23 @@ impl Outcome {
         now.saturating_sub(length)
     }
 
-    fn keep_across(&mut self, round: across::Round, length: Duration) {
+    /// Keeps what a round across processes came to; says whether there is time for the next.
+    fn keep_across(&mut self, heard: Heard, length: Duration) -> bool {
+        let round = match heard {
+            Heard::All(round) => round,
+            Heard::TooLittle => {
+                self.unheard += 1;
+                return true;
+            }
+            Heard::Left => return false,
+        };
         let began = self.since_began(length);
-        for (means, ages) in across::MEANS.iter().zip(&round) {
+        for (means, ages) in across::MEANS.iter().zip(round.iter()) {
             self.track(means.name(), "to-process")
                 .add(began, length, ages.clone());
         }
-        self.across.push(round);
+        self.across.push(*round);
+        true
     }
 
     fn keep(&mut self, round: Round, length: Duration) {

@@ -14,7 +14,7 @@ pub fn dispatch() -> Option<ExitCode> {
     match name.as_str() {
         load::WORKER => Some(load::work(&rest)),
         churn::TAPPER => Some(churn::tap()),
-        across::WORKER => Some(across::dispatch(&rest)),
+        across::WORKER => Some(across::listen(&rest)),
         churn::READER => Some(churn::read(&rest)),
         _ => None,
     }

@@ -8,7 +8,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::JoinHandle;
 use std::time::Duration;
 
-use ipc::clock::{self, Span, Time};
+use ipc::clock::{self, Span};
 use ipc::control::{self, Connection, Plug, PlugModule, PlugTap, Reply, Request};
 use ipc::wire::iceoryx::{Domain, OwnedPage};
 use ipc::wire::{Page, Reader};
@@ -41,21 +41,11 @@ impl Session {
         while !leave.load(Ordering::Relaxed) && !self.gone.load(Ordering::Relaxed) {
             self.running.step(clock::monotonic());
             self.running.commit(clock::monotonic());
-            next = next + self.period;
-            let now = clock::monotonic();
-            if next < now {
-                next = skip_to(next, now, self.period);
-            }
+            next = (next + self.period).on_grid(self.period, clock::monotonic());
             clock::sleep_until(next);
         }
         end(&self.gone, self.helpers.drain(..));
     }
-}
-
-/// The first beat of the grid of `next` that is not before `now`.
-fn skip_to(next: Time, now: Time, period: Span) -> Time {
-    let missed = now.since(next).0.div_ceil(period.0);
-    next + Span(missed * period.0)
 }
 
 /// Tells the helpers to end, and waits for it.

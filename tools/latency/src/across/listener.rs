@@ -4,6 +4,7 @@
 
 use std::cell::Cell;
 use std::fmt::Write as _;
+use std::process::ExitCode;
 
 use ipc::clock::{self, Time};
 use ipc::wire::iceoryx::Domain;
@@ -23,12 +24,20 @@ fn times_lost() -> i64 {
     getrusage(UsageWho::RUSAGE_THREAD).map_or(0, |usage| usage.involuntary_context_switches())
 }
 
-/// Listens until the moment it was given and writes one line for each message: its number and its age in
-/// nanoseconds. What came while the host had taken its processor away is left out. Arguments: the speaker's name, where its sequence lock is, the end, the processor to run on.
-///
-/// # Errors
-/// What is missing.
-pub fn work(arguments: &[String]) -> Result<(), String> {
+/// What a process started as [`WORKER`] does, given its arguments: the speaker's name, where its sequence lock is, the
+/// end, the processor to run on. It listens until the end and writes one line for each message: its number and its
+/// age in nanoseconds. What came while the host had taken its processor away is left out.
+pub fn listen(arguments: &[String]) -> ExitCode {
+    match work(arguments) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(message) => {
+            eprintln!("{WORKER}: {message}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn work(arguments: &[String]) -> Result<(), String> {
     let [name, seqlock, end, cpu] = arguments else {
         return Err("expected a name, a path, an end and a processor".into());
     };

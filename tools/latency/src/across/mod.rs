@@ -14,7 +14,7 @@ mod seqlock;
 
 use std::io::Read;
 use std::os::unix::process::CommandExt;
-use std::process::{Child, Command, ExitCode, Stdio};
+use std::process::{Child, Command, Stdio};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
@@ -30,7 +30,7 @@ use crate::pair::{self, Setting};
 use crate::track::histogram;
 use means::{Speakers, Stage};
 
-pub use listener::{WORKER, work};
+pub use listener::{WORKER, listen};
 
 /// What carries a message.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -194,17 +194,6 @@ fn sorted(text: &str) -> Result<Heard, String> {
         true => Heard::All(Box::new(round)),
         false => Heard::TooLittle,
     })
-}
-
-/// What a process started as [`WORKER`] does, given its arguments.
-pub fn dispatch(arguments: &[String]) -> ExitCode {
-    match work(arguments) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(message) => {
-            eprintln!("{WORKER}: {message}");
-            ExitCode::FAILURE
-        }
-    }
 }
 
 #[cfg(test)]
