@@ -160,7 +160,7 @@ pub fn start(
         std::io::Error::new(std::io::ErrorKind::InvalidInput, text)
     })?;
     let mut crew = Crew::new(Start {
-        begin: clock::monotonic() + START_WAIT,
+        begin: (clock::monotonic() + START_WAIT).off_tick(),
         halt: halt.clone(),
         stop: stop.clone(),
         policy: creature.executor.policy,

@@ -36,6 +36,14 @@ impl Time {
     pub fn seconds(self) -> f64 {
         self.0 as f64 * 1e-9
     }
+    /// The first moment from this one on that lies 0.3 ms after a full millisecond.
+    ///
+    /// Linux puts its tick at multiples of its own period, 1 to 10 ms, of this clock (since 6.5, `tick_init_jiffy_update`
+    /// in kernel/time/tick-sched.c). Beats of whole milliseconds counted from here are never met by it; on a virtual
+    /// machine it takes tens of microseconds from whom it meets.
+    pub fn off_tick(self) -> Time {
+        Time(300_000).on_grid(Span::millis(1), self)
+    }
     /// The first moment of the grid of `period` through this one that is not before `now`: this one itself if it
     /// is still to come.
     ///
@@ -195,6 +203,16 @@ mod tests {
         let (first, period) = (Time(5), Span(10));
         let on = [0, 5, 6, 15, 16, 25].map(|now| first.on_grid(period, Time(now)).0);
         assert_eq!(on, [5, 5, 15, 15, 25, 25]);
+    }
+
+    #[test]
+    fn beats_keep_away_from_the_tick() {
+        let ms = 1_000_000;
+        let off = [0, 300_000, 300_001, 7 * ms, 8 * ms - 1].map(|t| Time(t).off_tick().0);
+        assert_eq!(
+            off,
+            [300_000, 300_000, ms + 300_000, 7 * ms + 300_000, 8 * ms + 300_000]
+        );
     }
 
     #[test]

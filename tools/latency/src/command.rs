@@ -12,7 +12,7 @@ use ipc::clock::Span;
 use serde_json::{Value, json};
 
 use crate::compare::compare;
-use crate::gate::{self, Compared};
+use crate::gate::{self, Compared, Verdict};
 use crate::load::Load;
 use crate::pair::Contest;
 use crate::plant::Plant;
@@ -73,7 +73,7 @@ pub struct LatencyArgs {
     /// Folder for the files
     #[arg(long, default_value = "latency-report", value_name = "FOLDER")]
     out: PathBuf,
-    /// End with status 1 unless the run is within the margins
+    /// End with status 1 unless the run is within the margins; adds rounds where it is in doubt
     #[arg(long)]
     gate: bool,
     /// A fault put into every step on purpose, to see the gate fail
@@ -160,6 +160,7 @@ fn ask(args: &LatencyArgs) -> Result<Asked, String> {
         creature_spins: args.spinning,
         against: args.against,
         rounds: args.rounds,
+        to_the_end_of_doubt: args.gate,
         round: Duration::from_secs_f64(args.round_seconds),
         plant: args.plant,
     })
@@ -241,11 +242,7 @@ fn table(
         out.push_str("\n| ratio | at | median (min–max, spread) | geometric mean | limit | |\n|---|---|---|---:|---:|---|\n");
         for c in compared {
             let limit = c.limit.map_or("–".into(), |l| format!("{l:.2}"));
-            let verdict = match (c.limit, c.passes()) {
-                (None, _) => "",
-                (Some(_), true) => "passes",
-                (Some(_), false) => "**fails**",
-            };
+            let verdict = c.verdict().map_or("", Verdict::word);
             let _ = writeln!(
                 out,
                 "| {} | {} | {} | {:.2} | {limit} | {verdict} |",

@@ -11,8 +11,22 @@ use crate::run::{Asked, Outcome};
 /// The part of a side that a comparison looks at.
 type Part = fn(&Side) -> &hdrhistogram::Histogram<u64>;
 
-/// Every comparison of the rounds, and of quiet and churning intervals.
+/// Every comparison of the rounds, of quiet and churning intervals, and of a tap's effect.
 pub fn compare(asked: &Asked, outcome: &Outcome) -> Vec<Compared> {
+    let mut compared = rounds(outcome);
+    compared.extend(churn(outcome));
+    compared.extend(tap(asked, outcome));
+    compared
+}
+
+/// Every comparison of the rounds so far.
+pub fn rounds(outcome: &Outcome) -> Vec<Compared> {
+    let mut compared = pairs(outcome);
+    compared.extend(across(outcome));
+    compared
+}
+
+fn pairs(outcome: &Outcome) -> Vec<Compared> {
     let wake_up: Part = |side| &side.wake_up;
     let error: Part = |side| &side.period_error;
     let response: Part = |side| &side.response;
@@ -56,9 +70,6 @@ pub fn compare(asked: &Asked, outcome: &Outcome) -> Vec<Compared> {
             });
         }
     }
-    compared.extend(churn(outcome));
-    compared.extend(tap(asked, outcome));
-    compared.extend(across(outcome));
     compared
 }
 

@@ -13,7 +13,9 @@ use ipc::wiring::creature::Wake;
 use crate::across::{self, Heard};
 use crate::churn::Churn;
 use crate::command::Reference;
+use crate::compare;
 use crate::creature::{self, Alive, Kept};
+use crate::gate::{Compared, Verdict};
 use crate::load::{Load, Loaded};
 use crate::pair::{self, CONTESTS, Contest, Round};
 use crate::plant::Plant;
@@ -42,6 +44,8 @@ pub struct Asked {
     pub against: Option<Reference>,
     /// Paired rounds of each contest.
     pub rounds: usize,
+    /// Whether rounds are added, up to [`ROUNDS_MORE`] times as many, while a limit is not kept.
+    pub to_the_end_of_doubt: bool,
     /// How long each is.
     pub round: Duration,
     /// What is planted.
@@ -75,6 +79,9 @@ pub struct Outcome {
 
 /// Pieces that the time of the creature is cut into: as many pairs of quiet and churning ones as make a median.
 const INTERVALS: u32 = 20;
+
+/// How many times the asked-for rounds are added at most where a limit is not kept.
+const ROUNDS_MORE: usize = 2;
 
 /// Seconds that a round takes beyond its length: both sides begin at a full second.
 const ROUND_EXTRA: Duration = Duration::from_millis(2500);
@@ -127,8 +134,11 @@ pub fn run(asked: &Asked) -> Result<Outcome, String> {
         progress.tick();
         leave.load(Ordering::Relaxed)
     };
-    for n in 0..asked.rounds {
-        let round = format!("round {} of {}", n + 1, asked.rounds);
+    for n in 0..asked.rounds * (1 + ROUNDS_MORE) {
+        if n >= asked.rounds && !(asked.to_the_end_of_doubt && in_doubt(&outcome)) {
+            break;
+        }
+        let round = format!("round {} of {}", n + 1, asked.rounds.max(n + 1));
         let say = |what: &str| progress.say(&format!("{round}: {what}"));
         let goes_on = match asked.against {
             Some(Reference::Cyclictest) => {
@@ -148,6 +158,12 @@ pub fn run(asked: &Asked) -> Result<Outcome, String> {
     progress.end();
     outcome.interrupted = leave.load(Ordering::Relaxed);
     Ok(outcome)
+}
+
+/// Whether some limit is not kept by the rounds so far.
+fn in_doubt(outcome: &Outcome) -> bool {
+    let kept = |c: &Compared| c.verdict().is_none_or(|v| v == Verdict::Passes);
+    !compare::rounds(outcome).iter().all(kept)
 }
 
 /// Every contest once; says whether there is time for the next round.

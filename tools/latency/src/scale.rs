@@ -153,7 +153,7 @@ fn pace(cpu: usize, layers: usize, each: usize, length: Duration) -> Result<Valu
         sealed: true,
     };
     let (gauge, stop) = (Arc::new(BeatGauge::default()), Arc::new(AtomicBool::new(false)));
-    let begin = clock::monotonic() + Span::millis(20);
+    let begin = (clock::monotonic() + Span::millis(20)).off_tick();
     let halt = Arc::new(HaltChannel::default());
     let mut thread = executor::start(plan, begin, Group(rig), vec![gauge.clone()], halt, stop.clone())
         .map_err(|e| e.to_string())?;

@@ -25,6 +25,7 @@ fn a_run_measures_every_layer_and_leaves_every_file() {
         creature_spins: false,
         against: None,
         rounds: 0,
+        to_the_end_of_doubt: false,
         round: Duration::from_secs(1),
         plant: None,
     })

@@ -255,7 +255,7 @@ fn start(turning: Turning, period: Span, stop: Arc<AtomicBool>) -> io::Result<ex
         overrun: Overrun::Skip,
         sealed: false,
     };
-    let begin = clock::monotonic();
+    let begin = clock::monotonic().off_tick();
     executor::start(plan, begin, turning, Vec::new(), Arc::default(), stop)
 }
 

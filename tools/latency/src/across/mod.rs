@@ -117,7 +117,7 @@ pub fn round(setting: &Setting, leave: &dyn Fn() -> bool) -> Result<Heard, Strin
     let name = format!("across{}", std::process::id());
     let domain = Domain::join(&name).map_err(|e| e.to_string())?;
     let (stage, speakers) = Stage::set(&domain, &name)?;
-    let begin = clock::monotonic() + Span::millis(300);
+    let begin = (clock::monotonic() + Span::millis(300)).off_tick();
     let end = begin + Span(setting.round.as_nanos() as u64);
     let mut listener = Listener::start(setting, &name, stage.seqlock_path(), end)?;
     let plan = pair::plan(setting, "speaker", Span::ZERO, ipc::wiring::creature::Wake::Sleep);
