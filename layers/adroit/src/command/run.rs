@@ -7,9 +7,9 @@ use std::time::Duration;
 
 use clap::Args;
 
-use super::live::Listener;
 use super::{File, Trouble, placed};
 use crate::draw::svg;
+use crate::live::Listener;
 use crate::nest::{BEAT_S, Layout, Run, generate, picture};
 
 /// Beats between two pictures.
@@ -54,7 +54,7 @@ pub(super) fn run(args: &RunArgs) -> Result<(), Trouble> {
     let (mut beats, mut path_before) = (0_u64, String::new());
     while run.world.now_s < limit_s && (args.seconds.is_some() || !run.world.nest_complete()) {
         if let Some(listener) = &listener {
-            listener.serve(&mut run.control);
+            listener.serve(&mut run.control, |_| {});
         }
         let evaluated = run.beat();
         let written = if args.json && beats.is_multiple_of(PICTURE_BEATS) {

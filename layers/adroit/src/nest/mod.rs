@@ -24,7 +24,7 @@ mod world;
 
 pub use generator::{Layout, WORLD_STATIONS, generate};
 pub use geometry::Point;
-pub(crate) use geometry::distance_to_segment_m;
+pub(crate) use geometry::{between_rad, distance_to_segment_m};
 pub use motor::Unit;
 pub use person::Person;
 pub use picture::{Lamp, Picture, picture};
