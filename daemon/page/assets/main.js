@@ -4,6 +4,7 @@ import { get } from "./daemon.js";
 import { showEvents } from "./events.js";
 import { listen, showHalt } from "./halt.js";
 import { showLatency } from "./latency.js";
+import { setNest, showNest } from "./nest.js";
 import { showWires } from "./wires.js";
 import { showWiring, setWiring } from "./wiring.js";
 import { setWorld, showWorld } from "./world.js";
@@ -43,6 +44,7 @@ function setPlan(fresh) {
   document.title = `${name} – subsumed`;
   setWorld(fresh);
   setWiring(fresh.graph ?? {});
+  setNest(fresh);
 }
 
 /** Shows one part; a part that cannot make sense of what it got leaves the others alone. */
@@ -81,6 +83,7 @@ async function beat() {
     show(showHalt, state.halt);
     show(showHead, state);
     show(showWorld, state);
+    show(showNest, state);
     show(showWiring, state);
     show(showWires, state.wires);
     show(showLatency, state.layers);
