@@ -2,7 +2,7 @@
 
 use adroit::hierarchy::Hierarchy;
 use adroit::language::load;
-use adroit::nest::{Layout, PROGRAM, Pilot, Sensed, Setpoints, World, generate, vocabulary};
+use adroit::nest::{Layout, PROGRAM, Pilot, Scene, Sensed, Setpoints, World, generate, vocabulary};
 
 /// A body and a pilot who hear each other a beat late.
 struct Wired {
@@ -15,7 +15,10 @@ struct Wired {
 
 impl Wired {
     fn new(seed: u64, layout: Layout) -> Self {
-        let world = generate(seed, layout);
+        Self::of(generate(seed, layout))
+    }
+
+    fn of(world: World) -> Self {
         Self {
             pilot: Pilot::new(world.wanted),
             sensed: world.sensed(),
@@ -29,6 +32,11 @@ impl Wired {
         self.world.live(Some(&self.setpoints));
         let late = std::mem::replace(&mut self.sensed, self.world.sensed());
         (self.setpoints, _) = self.pilot.step(&mut self.hierarchy, &late);
+    }
+
+    fn active(&self, rm: &str) -> bool {
+        let found = self.hierarchy.find(rm).expect("the program has it");
+        self.hierarchy.active(found)
     }
 
     fn until_complete(&mut self, limit_s: f64) -> bool {
@@ -95,4 +103,54 @@ fn a_run_over_wires_is_repeatable_to_the_bit() {
     };
     assert_eq!(end(7), end(7));
     assert_ne!(end(7), end(8));
+}
+
+/// Beats in a scene, over wires, until something holds.
+fn watched(scene: Scene, limit_s: f64, mut holds: impl FnMut(&Wired) -> bool) -> Wired {
+    let layout = Layout::default();
+    let mut wired = Wired::of(scene.world(1, layout));
+    while !holds(&wired) {
+        wired.beat();
+        assert!(wired.world.now_s < limit_s, "{scene:?}: not within {limit_s} s");
+    }
+    wired
+}
+
+#[test]
+fn every_published_behaviour_is_shown_over_wires() {
+    let complete = |wired: &Wired| wired.world.nest_complete();
+    watched(Scene::SingleSweep, 900.0, complete);
+    watched(Scene::NoSite, 900.0, |wired| {
+        wired.active("maintenance") && wired.world.now_s > 30.0 && wired.world.robot.site.is_none()
+    });
+    let put = watched(Scene::PutInFront, 30.0, |wired| wired.world.objects.len() == 7);
+    let near = put.world.objects.last().expect("it was put there").id;
+    let taken = watched(Scene::PutInFront, 40.0, |wired| wired.world.robot.held.is_some());
+    assert_eq!(taken.world.robot.held, Some(near), "at once, before any other");
+    let reached = watched(Scene::WithinReach, 10.0, |wired| wired.world.robot.held.is_some());
+    assert_eq!(reached.sensed.rolled_m, 0.0, "nothing was done to get there");
+    let mut held = false;
+    watched(Scene::Brought, 400.0, |wired| {
+        held |= wired.world.robot.held.is_some();
+        wired.active("maintenance") && wired.world.nest_complete()
+    });
+    assert!(!held, "it built nothing itself");
+    let mut refuelled = false;
+    let end = watched(Scene::Refuelling, 900.0, |wired| {
+        refuelled |= wired.world.robot.filling && !wired.world.nest_complete();
+        wired.world.nest_complete()
+    });
+    assert!(refuelled && end.world.robot.fuel > 0.0);
+    for (scene, rm) in [
+        (Scene::OneObstacle, "single-obstacle"),
+        (Scene::TwoObstacles, "two-obstacle"),
+        (Scene::MoreObstacles, "more-obstacle"),
+    ] {
+        let mut used = false;
+        watched(scene, 200.0, |wired| {
+            used |= wired.active(rm);
+            wired.world.robot.held.is_some()
+        });
+        assert!(used, "{rm}");
+    }
 }

@@ -2,6 +2,7 @@
 //!
 //! Must never hold a value that the world does not take from here.
 
+use adroit::nest::Scene;
 use ipc::message::Kind;
 use ipc::wiring::{Declaration, Parameter, Port};
 
@@ -59,6 +60,12 @@ pub(super) static DECLARATION: Declaration = Declaration {
         things("obstacles_3", "four more"),
     ],
     parameters: &[
+        Parameter::word(
+            "scene",
+            &Scene::NAMES,
+            "seeded",
+            "a world from a seed, or one of the published demonstrations",
+        ),
         Parameter::number("number", 1.0, "the seed of the world")
             .between(0.0, 1e15)
             .unit("1"),

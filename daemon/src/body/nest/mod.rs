@@ -4,7 +4,7 @@
 
 mod declaration;
 
-use adroit::nest::{BEAT_S, Layout, Sensed, Setpoints, TOLD_MAX, Told, World as Floor, generate, scene};
+use adroit::nest::{BEAT_S, Layout, Scene, Sensed, Setpoints, TOLD_MAX, Told, World as Floor, scene as seen};
 use ipc::clock::{Span, Time};
 use ipc::message::{Map, Payload, Polar, Pose};
 use ipc::wiring::Setting;
@@ -37,6 +37,7 @@ pub struct NestWorld {
 
 fn build(settings: &[Setting], _seed: u64, _start: Option<Place>) -> Box<dyn World> {
     let [
+        Setting::Text(scene),
         Setting::Number(number),
         Setting::Number(objects),
         Setting::Number(wanted),
@@ -54,7 +55,8 @@ fn build(settings: &[Setting], _seed: u64, _start: Option<Place>) -> Box<dyn Wor
         persons: *persons as usize,
         ..Layout::default()
     };
-    let mut floor = generate(*number as u64, layout);
+    let scene = Scene::named(scene).expect("the checker knows the scenes");
+    let mut floor = scene.world(*number as u64, layout);
     floor.cold = *cold;
     Box::new(NestWorld { floor, lived: None })
 }
@@ -140,7 +142,7 @@ impl World for NestWorld {
         let robot = &self.floor.robot;
         json!({
             "robot": { "x": robot.place.x_m, "y": robot.place.y_m, "heading": robot.heading_rad },
-            "nest": scene(&self.floor),
+            "nest": seen(&self.floor),
         })
     }
 }

@@ -2,6 +2,7 @@
 
 mod figures;
 mod run;
+mod teach;
 
 use std::fs;
 use std::io::{self, Read};
@@ -51,6 +52,8 @@ enum What {
     Undo(live::Address),
     /// Print the program of a running hierarchy with all that was applied to it
     Save(live::Address),
+    /// Teach it a cue that means nothing yet, and watch it learn
+    Teach(teach::TeachArgs),
     /// Run many seeded worlds and print figures
     Figures(figures::FiguresArgs),
 }
@@ -168,6 +171,7 @@ pub fn command(args: AdroitArgs) -> ExitCode {
         What::List(at) => at.ask(&live::Request::List).map_err(Trouble::from),
         What::Undo(at) => at.ask(&live::Request::Undo).map_err(Trouble::from),
         What::Save(at) => at.ask(&live::Request::Save).map_err(Trouble::from),
+        What::Teach(args) => teach::teach(&args).map_err(Trouble::from),
         What::Figures(args) => figures::figures(&args).map_err(Trouble::from),
     };
     match result {

@@ -21,6 +21,7 @@ mod pilot;
 mod primitives;
 mod robot;
 mod run;
+mod scenes;
 mod sweep;
 mod wired;
 mod world;
@@ -37,6 +38,7 @@ pub use robot::{
     ARM_M, CLEARANCE_M, EYES_RANGE_M, EYES_SIDE_RAD, METRES_ON_A_TANK, RADIUS_M, Robot, SPEED_M_S,
 };
 pub use run::{Measures, Run};
+pub use scenes::Scene;
 pub use wired::{OBSTACLES_TOLD_MAX, Sensed, Setpoints, TOLD_MAX, Told};
 pub use world::{BEAT_S, Disc, FLOOR_X_M, FLOOR_Y_M, NEST_RADIUS_M, Object, Site, Station, World};
 

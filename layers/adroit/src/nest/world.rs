@@ -7,6 +7,7 @@ use super::eyes::Seen;
 use super::geometry::Point;
 use super::motor::Working;
 use super::person::Person;
+use super::scenes::Scene;
 use super::robot::{FILLING_PER_S, IDLE_PER_S, PUMP_M, RADIUS_M, Robot};
 use crate::hierarchy::McuId;
 use crate::planning::Planner;
@@ -101,6 +102,9 @@ pub struct World {
     pub(crate) burnt: f64,
     pub(crate) bumps: u32,
     pub(crate) stranded: bool,
+    /// The demonstration it is, and how much of what happens in it has happened.
+    pub(super) scene: Scene,
+    pub(super) happened: usize,
     /// Way of the driven wheel, metres.
     pub(super) rolled_m: f64,
     /// How long the hand has been about to change, seconds.
@@ -135,6 +139,8 @@ impl World {
             burnt: 0.0,
             bumps: 0,
             stranded: false,
+            scene: Scene::Seeded,
+            happened: 0,
             rolled_m: 0.0,
             hand_s: 0.0,
             beats: 0,
@@ -205,6 +211,7 @@ impl World {
                 object.place = hand;
             }
         }
+        self.scene.happen(self);
         self.burn(IDLE_PER_S * BEAT_S);
         self.fill();
         self.move_persons();
