@@ -4,7 +4,7 @@
 
 mod declaration;
 
-use adroit::nest::{BEAT_S, Layout, Scene, Sensed, Setpoints, TOLD_MAX, Told, World as Floor, scene as seen};
+use adroit::nest::{BEAT_S, Layout, Scene, Sensed, Setpoints, TOLD_MAX, Told, World as Floor, view as seen};
 use ipc::clock::{Span, Time};
 use ipc::message::{Map, Payload, Polar, Pose};
 use ipc::wiring::Setting;

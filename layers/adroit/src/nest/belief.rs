@@ -44,7 +44,7 @@ impl World {
     pub(super) fn forget_all(&mut self) {
         self.seen.clear();
         let mut map = std::mem::take(&mut self.robot.map);
-        map.clear();
+        map.forget();
         self.robot = Robot::new(Point::default(), 0.0);
         self.robot.map = map;
         self.sites.clear();

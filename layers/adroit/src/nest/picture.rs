@@ -26,7 +26,7 @@ pub struct Lamp {
 
 /// A place at one moment: everything but the hierarchy.
 #[derive(Clone, Debug, Serialize)]
-pub struct Scene<'a> {
+pub struct View<'a> {
     /// Time since the start, seconds.
     pub time_s: f64,
     /// Size of the floor, metres.
@@ -55,10 +55,10 @@ pub struct Scene<'a> {
     pub built: usize,
 }
 
-/// The scene of a world, ready to be written as JSON.
+/// The view of a world, ready to be written as JSON.
 #[must_use]
-pub fn scene(world: &World) -> Scene<'_> {
-    Scene {
+pub fn view(world: &World) -> View<'_> {
+    View {
         time_s: world.now_s,
         floor_m: (FLOOR_X_M, FLOOR_Y_M),
         robot: &world.robot,
@@ -80,7 +80,7 @@ pub fn scene(world: &World) -> Scene<'_> {
 pub struct Picture<'a> {
     /// The world.
     #[serde(flatten)]
-    pub scene: Scene<'a>,
+    pub view: View<'a>,
     /// The way planned ahead.
     pub plan: &'a [Point],
     /// MCUs at work.
@@ -116,7 +116,7 @@ pub fn picture(run: &Run) -> Picture<'_> {
     let world = &run.world;
     let vocabulary = run.control.vocabulary();
     Picture {
-        scene: scene(world),
+        view: view(world),
         plan: world.planner.way(),
         working: hierarchy
             .outputs()

@@ -113,7 +113,8 @@ impl Scene {
                 world.robot.fuel = 0.75;
             }
             Self::OneObstacle | Self::TwoObstacles | Self::MoreObstacles => {
-                spread(world, 11.0);
+                world.put_object(Point::new(9.8, 6.0));
+                spread(world, 12.0);
                 let count = match self {
                     Self::OneObstacle => 1,
                     Self::TwoObstacles => 2,

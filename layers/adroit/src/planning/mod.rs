@@ -48,7 +48,7 @@ impl Map {
     }
 
     /// Forgets all obstacles.
-    pub(crate) fn clear(&mut self) {
+    pub(crate) fn forget(&mut self) {
         self.known.clear();
     }
 
