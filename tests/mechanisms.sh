@@ -85,7 +85,7 @@ creature=nest
 "$bin/subsumed" --creature layers/mechanisms/nest.toml --page-port 0 --flight-recorder off >"$work/nest.log" 2>&1 &
 daemon=$!
 until_shown "it drives" 'nest.wheel .* 0\.[1-9]' ctl wires
-until_shown "it carries an object" '^body.held .* [1-9]' ctl wires
+until_shown "it carries an object" '#[0-9]+ +[1-9]' ctl watch body.held --count 1
 [ "$(ctl status --json | tr ',{' '\n\n' | sed -n 's/.*"real_time_allocations": *//p' | head -1)" = 0 ] || fail "allocations on real-time threads"
 port=$(sed -n 's#.*http://127.0.0.1:\([0-9]*\)/#\1#p' "$work/nest.log")
 if command -v chromium >/dev/null; then

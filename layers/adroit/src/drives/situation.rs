@@ -48,7 +48,7 @@ pub fn vocabulary() -> Vocabulary {
 pub struct Limits {
     /// Driving for this long tires it out, seconds.
     pub stamina_s: f64,
-    /// Standing for this long recovers it wholly, seconds.
+    /// Standing still for this long, resting, recovers it wholly, seconds.
     pub recovery_s: f64,
 }
 
@@ -121,10 +121,11 @@ impl Situation {
         if let Some(before) = self.sensed {
             let passed_s = (sensed.now_s - before.now_s).max(0.0);
             let moved = before.place.distance_m(sensed.place) > STANDING_M_S * passed_s;
-            let change = if moved {
-                passed_s / self.limits.stamina_s
-            } else {
-                -passed_s / self.limits.recovery_s
+            // A pause on the way is no rest: the robot turns on the spot, or waits for a map.
+            let change = match (moved, self.resting) {
+                (true, _) => passed_s / self.limits.stamina_s,
+                (false, true) => -passed_s / self.limits.recovery_s,
+                (false, false) => 0.0,
             };
             self.tired = (self.tired + change).clamp(0.0, 1.0);
         }
