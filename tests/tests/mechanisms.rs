@@ -42,7 +42,11 @@ fn a_hierarchy_as_level_2_drives_allen_and_is_gone_without_a_trace() {
         assert!(refused.is_empty(), "{:?}", refused[0].1);
         run.advance(Span::secs(200));
         let said = headings(&run);
-        assert!(said > before + 100, "level 2 drove nowhere: {} headings", said - before);
+        assert!(
+            said > before + 100,
+            "level 2 drove nowhere: {} headings",
+            said - before
+        );
         run.moment(BEGIN + run.elapsed(), &[Stimulus::Leave("drives".into())]);
         run.advance(Span::secs(2));
         before = headings(&run);
@@ -51,7 +55,11 @@ fn a_hierarchy_as_level_2_drives_allen_and_is_gone_without_a_trace() {
         assert_eq!(headings(&run), before, "nobody speaks for a layer that is gone");
         assert!(office(&mut run).0 > gone_m + 1.0, "levels 0 and 1 do not go on");
     }
-    assert_eq!(office(&mut run).1, 0, "whatever level 2 wants, level 0 hits nothing");
+    assert_eq!(
+        office(&mut run).1,
+        0,
+        "whatever level 2 wants, level 0 hits nothing"
+    );
 }
 
 fn nest(number: u32) -> VirtualRun {
@@ -97,5 +105,9 @@ fn an_emergency_stop_freezes_the_nest_builder_arm_and_all() {
     );
     run.moment(BEGIN + run.elapsed(), &[Stimulus::Reset]);
     run.advance(Span::secs(20));
-    assert_ne!(held.place, floor(&mut run).robot.place, "after the reset it goes on");
+    assert_ne!(
+        held.place,
+        floor(&mut run).robot.place,
+        "after the reset it goes on"
+    );
 }

@@ -54,7 +54,15 @@ fn the_nest_is_built_over_wires_as_well() {
     for seed in 0..40 {
         let mut wired = Wired::new(seed, Layout::default());
         if !wired.until_complete(1800.0) {
-            incomplete.push((seed, wired.world.robot.fuel, wired.hierarchy.active_path().map(|rm| wired.hierarchy.name(rm).to_owned()).collect::<Vec<_>>()));
+            incomplete.push((
+                seed,
+                wired.world.robot.fuel,
+                wired
+                    .hierarchy
+                    .active_path()
+                    .map(|rm| wired.hierarchy.name(rm).to_owned())
+                    .collect::<Vec<_>>(),
+            ));
         }
         time_s += wired.world.now_s / 40.0;
     }
@@ -70,8 +78,14 @@ fn without_setpoints_the_robot_stands_and_the_world_goes_on() {
         world.live(None);
     }
     let after = world.sensed();
-    assert_eq!((before.place, before.heading_rad), (after.place, after.heading_rad));
-    assert_eq!((before.arm_m, before.steering_rad), (after.arm_m, after.steering_rad));
+    assert_eq!(
+        (before.place, before.heading_rad),
+        (after.place, after.heading_rad)
+    );
+    assert_eq!(
+        (before.arm_m, before.steering_rad),
+        (after.arm_m, after.steering_rad)
+    );
     assert!((after.now_s - 10.0).abs() < 1e-9);
 }
 

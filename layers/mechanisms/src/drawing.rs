@@ -24,8 +24,15 @@ pub fn drawing(kind: &str) -> Option<Drawing> {
         _ => return None,
     };
     let hierarchy = load(program, &vocabulary).expect("the programs are tested");
-    let places = hierarchy.levels().iter().flat_map(|level| level.first..level.first + level.width);
-    let names = places.map(|place| hierarchy.name(adroit::hierarchy::MechanismIndex(place)).to_owned());
+    let places = hierarchy
+        .levels()
+        .iter()
+        .flat_map(|level| level.first..level.first + level.width);
+    let names = places.map(|place| {
+        hierarchy
+            .name(adroit::hierarchy::MechanismIndex(place))
+            .to_owned()
+    });
     Some(Drawing {
         svg: svg(&hierarchy, &vocabulary),
         names: names.collect(),

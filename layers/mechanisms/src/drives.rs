@@ -56,8 +56,16 @@ static DECLARATION: Declaration = Declaration {
     ],
     parameters: &[
         Parameter::span("every", Span::millis(250), "time between two evaluations"),
-        Parameter::span("stamina", Span::secs(90), "how long it drives until it is tired out"),
-        Parameter::span("recovery", Span::secs(20), "how long it stands until it is recovered"),
+        Parameter::span(
+            "stamina",
+            Span::secs(90),
+            "how long it drives until it is tired out",
+        ),
+        Parameter::span(
+            "recovery",
+            Span::secs(20),
+            "how long it stands until it is recovered",
+        ),
     ],
 };
 

@@ -6,8 +6,8 @@
 //! Must never decide anything itself: that stands in programs of the assembly language.
 
 pub mod desk;
-pub mod drives;
 mod drawing;
+pub mod drives;
 mod lamps;
 pub mod nest;
 

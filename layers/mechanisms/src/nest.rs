@@ -58,7 +58,11 @@ static DECLARATION: Declaration = Declaration {
         Port::new("steering", Kind::Number, "steering wheel against straight ahead").unit("rad"),
         Port::new("rolled", Kind::Number, "way of the driven wheel since the start").unit("m"),
         Port::new("arm", Kind::Polar, "length and direction of the arm").unit("m"),
-        Port::new("held", Kind::Number, "number of the object in the hand, zero for none"),
+        Port::new(
+            "held",
+            Kind::Number,
+            "number of the object in the hand, zero for none",
+        ),
         Port::new("fuel", Kind::Number, "fuel in the tank").unit("1"),
         Port::new("filling", Kind::Bit, "fuel flows"),
         Port::new("bumped", Kind::Bit, "the body is against something"),
@@ -66,19 +70,40 @@ static DECLARATION: Declaration = Declaration {
         Port::new("ordered", Kind::Bit, "an order to build is heard"),
         Port::new("whistle", Kind::Bit, "someone whistles"),
         Port::new("red_light", Kind::Bit, "a red light is on"),
-        Port::new("objects", Kind::Map, "objects in view: number, x, y of the four nearest"),
+        Port::new(
+            "objects",
+            Kind::Map,
+            "objects in view: number, x, y of the four nearest",
+        ),
         Port::new("stations", Kind::Map, "gas stations in view: number, x, y"),
         Port::new("persons", Kind::Map, "persons in view: number, x, y"),
-        Port::new("site", Kind::Map, "a nest site in view: number, x, y, how many objects lie there"),
-        Port::new("obstacles", Kind::Map, "obstacles in view: radius in millimetres, x, y of the nearest"),
+        Port::new(
+            "site",
+            Kind::Map,
+            "a nest site in view: number, x, y, how many objects lie there",
+        ),
+        Port::new(
+            "obstacles",
+            Kind::Map,
+            "obstacles in view: radius in millimetres, x, y of the nearest",
+        ),
         Port::new("obstacles_2", Kind::Map, "the next four obstacles"),
         Port::new("obstacles_3", Kind::Map, "four more"),
     ],
     outputs: &[
         Port::new("wheel", Kind::Number, "speed of the driven wheel").unit("m/s"),
         Port::new("steer", Kind::Number, "how the steering wheel shall stand").unit("rad"),
-        Port::new("reach", Kind::Polar, "how long the arm shall be, and its direction").unit("m"),
-        Port::new("hand", Kind::Number, "number of the object to hold, zero for none"),
+        Port::new(
+            "reach",
+            Kind::Polar,
+            "how long the arm shall be, and its direction",
+        )
+        .unit("m"),
+        Port::new(
+            "hand",
+            Kind::Number,
+            "number of the object to hold, zero for none",
+        ),
         Port::new(
             "active",
             Kind::Map,
@@ -86,11 +111,9 @@ static DECLARATION: Declaration = Declaration {
         ),
         Port::new("listening", Kind::Map, "which RMs have their inputs open"),
     ],
-    parameters: &[
-        Parameter::number("wanted", 6.0, "how many objects make a nest")
-            .between(1.0, 100.0)
-            .unit("1"),
-    ],
+    parameters: &[Parameter::number("wanted", 6.0, "how many objects make a nest")
+        .between(1.0, 100.0)
+        .unit("1")],
 };
 
 struct NestModule {
@@ -128,7 +151,10 @@ impl NestModule {
         let arm = beat.latest(ARM)?;
         let [filling, bumped, cold, ordered, whistle, red_light] =
             CUES.map(|cue| beat.latest(cue).unwrap_or(false));
-        let list = |port: In<Map>| beat.latest(port).map_or([Told::default(); TOLD_MAX], |map| told(&map));
+        let list = |port: In<Map>| {
+            beat.latest(port)
+                .map_or([Told::default(); TOLD_MAX], |map| told(&map))
+        };
         let site = beat.latest(SITE);
         let mut obstacles = [Told::default(); OBSTACLES_TOLD_MAX];
         for (some, port) in obstacles.chunks_exact_mut(TOLD_MAX).zip(OBSTACLES) {

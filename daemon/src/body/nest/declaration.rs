@@ -31,17 +31,30 @@ pub(super) static DECLARATION: Declaration = Declaration {
         Port::new("steer", Kind::Number, "how the steering wheel shall stand")
             .unit("rad")
             .between(-3.2, 3.2),
-        Port::new("reach", Kind::Polar, "how long the arm shall be, and its direction")
-            .unit("m")
-            .between(-3.2, 3.2),
-        Port::new("hand", Kind::Number, "number of the object to hold, zero for none").between(0.0, NUMBER_MAX),
+        Port::new(
+            "reach",
+            Kind::Polar,
+            "how long the arm shall be, and its direction",
+        )
+        .unit("m")
+        .between(-3.2, 3.2),
+        Port::new(
+            "hand",
+            Kind::Number,
+            "number of the object to hold, zero for none",
+        )
+        .between(0.0, NUMBER_MAX),
     ],
     outputs: &[
         Port::new("pose", Kind::Pose, "where the robot is"),
         Port::new("steering", Kind::Number, "steering wheel against straight ahead").unit("rad"),
         Port::new("rolled", Kind::Number, "way of the driven wheel since the start").unit("m"),
         Port::new("arm", Kind::Polar, "length and direction of the arm").unit("m"),
-        Port::new("held", Kind::Number, "number of the object in the hand, zero for none"),
+        Port::new(
+            "held",
+            Kind::Number,
+            "number of the object in the hand, zero for none",
+        ),
         Port::new("fuel", Kind::Number, "fuel in the tank")
             .unit("1")
             .between(0.0, 1.0),
@@ -54,8 +67,14 @@ pub(super) static DECLARATION: Declaration = Declaration {
         things("objects", "objects in view: number, x, y of the four nearest"),
         things("stations", "gas stations in view: number, x, y"),
         things("persons", "persons in view: number, x, y"),
-        things("site", "a nest site in view: number, x, y, how many objects lie there"),
-        things("obstacles", "obstacles in view: radius in millimetres, x, y of the nearest"),
+        things(
+            "site",
+            "a nest site in view: number, x, y, how many objects lie there",
+        ),
+        things(
+            "obstacles",
+            "obstacles in view: radius in millimetres, x, y of the nearest",
+        ),
         things("obstacles_2", "the next four obstacles"),
         things("obstacles_3", "four more"),
     ],
@@ -75,10 +94,18 @@ pub(super) static DECLARATION: Declaration = Declaration {
         Parameter::number("wanted", 6.0, "how many objects make a nest, for those who watch")
             .between(1.0, 100.0)
             .unit("1"),
-        Parameter::number("persons", 1.0, "persons who take things and put them down elsewhere")
-            .between(0.0, 10.0)
-            .unit("1"),
+        Parameter::number(
+            "persons",
+            1.0,
+            "persons who take things and put them down elsewhere",
+        )
+        .between(0.0, 10.0)
+        .unit("1"),
         Parameter::bit("site", true, "whether there is a proper nest site"),
-        Parameter::bit("cold", true, "whether it is cold, which is what excites nest building"),
+        Parameter::bit(
+            "cold",
+            true,
+            "whether it is cold, which is what excites nest building",
+        ),
     ],
 };

@@ -96,7 +96,11 @@ pub(super) fn teach(args: &TeachArgs) -> Result<(), String> {
             break;
         }
         if let Some(strongest) = class.learner.associations(&class.run.control).first() {
-            let what = if strongest.proposed { "proposed" } else { "observed" };
+            let what = if strongest.proposed {
+                "proposed"
+            } else {
+                "observed"
+            };
             println!(
                 "experience {lesson}: {what}: {} (evidence {:.1})",
                 strongest.command(),

@@ -172,8 +172,11 @@ impl Situation {
             x -= push * libm::cos(bearing_rad(sonar));
             y -= push * libm::sin(bearing_rad(sonar));
         }
-        (libm::hypot(x, y) > 0.1)
-            .then(|| sensed.place.towards(sensed.heading_rad + libm::atan2(y, x), OUT_M))
+        (libm::hypot(x, y) > 0.1).then(|| {
+            sensed
+                .place
+                .towards(sensed.heading_rad + libm::atan2(y, x), OUT_M)
+        })
     }
 }
 

@@ -31,8 +31,8 @@ pub use geometry::Point;
 pub(crate) use geometry::{between_rad, distance_to_segment_m};
 pub use motor::Unit;
 pub use person::Person;
-pub use pilot::Pilot;
 pub use picture::{Lamp, Picture, View, picture, view};
+pub use pilot::Pilot;
 pub use primitives::{STIMULI, vocabulary};
 pub use robot::{
     ARM_M, CLEARANCE_M, EYES_RANGE_M, EYES_SIDE_RAD, METRES_ON_A_TANK, RADIUS_M, Robot, SPEED_M_S,

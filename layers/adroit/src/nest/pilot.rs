@@ -6,9 +6,7 @@
 //! Must never: allocate after it was made, plan (a search allocates), or see the world.
 
 use super::geometry::{Point, between_rad};
-use super::motor::{
-    HAND_S, HOLD_S, ON_COURSE_RAD, ON_THE_SPOT_STEERING_RAD, Unit, Working, steering_for,
-};
+use super::motor::{HAND_S, HOLD_S, ON_COURSE_RAD, ON_THE_SPOT_STEERING_RAD, Unit, Working, steering_for};
 use super::robot::{ARM_M, SPEED_M_S, STOWED_M, WHEELBASE_M};
 use super::run::called;
 use super::wired::{Sensed, Setpoints};
@@ -90,7 +88,9 @@ impl Pilot {
     /// Lets the units work; one that has ended, or failed, is over.
     fn work(&mut self, hierarchy: &mut Hierarchy, driven_m: f64) {
         for slot in 0..OUTPUTS_MAX {
-            let Some(mut unit) = self.working[slot] else { continue };
+            let Some(mut unit) = self.working[slot] else {
+                continue;
+            };
             unit.driven_m += driven_m;
             let over = self.belief.now_s > unit.since_s + UNIT_S;
             let ended = self.unit(&unit).or(over.then_some(false));

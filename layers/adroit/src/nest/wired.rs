@@ -11,8 +11,8 @@
 //! Must never: hold anything without a bound, for all of it goes into messages of fixed length.
 
 use super::geometry::Point;
-use super::motor::{HAND_M, HAND_S, ON_THE_SPOT_STEERING_RAD, approach};
 use super::motor::{ARM_M_S, ARM_RAD_S, STEERING_RAD_S};
+use super::motor::{HAND_M, HAND_S, ON_THE_SPOT_STEERING_RAD, approach};
 use super::robot::{ARM_M, METRES_ON_A_TANK, SPEED_M_S, STOWED_M, WHEELBASE_M};
 use super::world::{BEAT_S, World};
 
@@ -225,7 +225,9 @@ impl World {
                 number: site.id,
                 place: site.place,
             }),
-            lying: site.map_or(0, |site| u32::try_from(self.lying_at(site.place)).unwrap_or(u32::MAX)),
+            lying: site.map_or(0, |site| {
+                u32::try_from(self.lying_at(site.place)).unwrap_or(u32::MAX)
+            }),
             obstacles,
         }
     }

@@ -7,8 +7,8 @@ use super::eyes::Seen;
 use super::geometry::Point;
 use super::motor::Working;
 use super::person::Person;
-use super::scenes::Scene;
 use super::robot::{FILLING_PER_S, IDLE_PER_S, PUMP_M, RADIUS_M, Robot};
+use super::scenes::Scene;
 use crate::hierarchy::McuId;
 use crate::planning::Planner;
 

@@ -71,8 +71,8 @@ fn main() -> ExitCode {
         println!("{HELP}");
         return ExitCode::SUCCESS;
     }
-    let loaded = Asked::read(std::env::args().skip(1))
-        .and_then(|asked| asked.load().map(|running| (asked, running)));
+    let loaded =
+        Asked::read(std::env::args().skip(1)).and_then(|asked| asked.load().map(|running| (asked, running)));
     let (asked, running) = match loaded {
         Ok(loaded) => loaded,
         Err(message) => {
