@@ -120,8 +120,10 @@ impl World for NestWorld {
             arm_m: reach[0],
             hold: link.motion(HAND)[0] as u32,
         };
-        // Behind a closed gate all of them read zero, which for an arm is a place to go to: it stays instead.
-        let obeyed = (link.causes() == Causes::NONE).then_some(&setpoints);
+        // Whoever halts it says zero on every input. For a wheel that is to stop, for an arm it is a place to go to,
+        // and for a hand to let go: an arm of no length, which nobody can want, means to stay as it is.
+        let told = link.causes() == Causes::NONE && setpoints.arm_m > 0.0;
+        let obeyed = told.then_some(&setpoints);
         let mut lived = self.lived.unwrap_or(now);
         let mut beats = 0;
         while now.since(lived) >= BEAT && beats < GAP_BEATS_MAX {
