@@ -92,7 +92,7 @@ fn the_nest_is_built_by_a_layer_over_wires() {
 #[test]
 fn an_emergency_stop_freezes_the_nest_builder_arm_and_all() {
     let mut run = nest(3);
-    run.advance(Span::secs(40));
+    run.advance(Span::secs(60));
     run.moment(BEGIN + run.elapsed(), &[Stimulus::Halt]);
     run.advance(Span::millis(200));
     let held = floor(&mut run).robot.clone();
