@@ -136,14 +136,13 @@ impl Scene {
                 world.put_object(front);
                 world.happened = 1;
             }
-            Self::Brought if world.now_s > 10.0 && world.happened < world.wanted => {
-                // One every three seconds, into the nest.
-                if world.now_s > 10.0 + 3.0 * world.happened as f64 {
-                    let turn_rad = world.happened as f64 * 2.4;
-                    let spot = Point::new(7.3, 6.0).towards(turn_rad, 0.4);
-                    world.put_object(spot);
-                    world.happened += 1;
-                }
+            // From ten seconds on, one every three seconds, into the nest.
+            Self::Brought
+                if world.happened < world.wanted && world.now_s > 10.0 + 3.0 * world.happened as f64 =>
+            {
+                let turn_rad = world.happened as f64 * 2.4;
+                world.put_object(Point::new(7.3, 6.0).towards(turn_rad, 0.4));
+                world.happened += 1;
             }
             _ => {}
         }
