@@ -33,6 +33,8 @@ static ASSETS: &[Asset] = &[
     asset!("/words.js", SCRIPT, "words.js"),
     asset!("/halt.js", SCRIPT, "halt.js"),
     asset!("/world.js", SCRIPT, "world.js"),
+    asset!("/worlds.js", SCRIPT, "worlds.js"),
+    asset!("/floor.js", SCRIPT, "floor.js"),
     asset!("/wiring.js", SCRIPT, "wiring.js"),
     asset!("/wires.js", SCRIPT, "wires.js"),
     asset!("/latency.js", SCRIPT, "latency.js"),

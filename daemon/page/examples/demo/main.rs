@@ -51,7 +51,7 @@ impl Demo {
 impl Source for Demo {
     fn plan(&self) -> String {
         json!({
-            "creature": "allen", "floor": floor::plan(), "robot_radius_m": 0.2,
+            "creature": "allen", "body": "office", "floor": floor::plan(), "robot_radius_m": 0.2,
             "graph": graph::graph(),
         })
         .to_string()
