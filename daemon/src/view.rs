@@ -30,6 +30,11 @@ impl page::Source for View {
         self.0.status().to_string()
     }
 
+    fn timeline(&self, after: u64) -> String {
+        let line = self.0.timeline.lock().expect("nobody panics holding the time line");
+        line.after(after).to_string()
+    }
+
     fn halt(&self) {
         self.0.halt.halt(Causes::EMERGENCY);
         self.0.events.note("halt", None, "emergency stop from the page");

@@ -75,6 +75,10 @@ impl Source for Demo {
         state.to_string()
     }
 
+    fn timeline(&self, after: u64) -> String {
+        moving::timeline(self.time_s(), after)
+    }
+
     fn halt(&self) {
         let time_s = self.time_s();
         if let Ok(mut buttons) = self.buttons.lock()
