@@ -79,6 +79,9 @@ fn load(options: &Options) -> Result<(Creature, String), String> {
     if options.seconds.is_some_and(|s| !s.is_finite() || s <= 0.0) {
         return Err("--seconds: expected a number of seconds above zero".into());
     }
+    if let Some(file) = &options.page_token {
+        token(file)?;
+    }
     Ok((creature, source.text))
 }
 
