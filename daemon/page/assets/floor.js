@@ -104,7 +104,7 @@ function drawFloor(pen, pixel) {
 }
 
 /** Writes the name of a box along its longer side, never upside down. */
-function label(pen, box, angle, size) {
+function nameBox(pen, box, angle, size) {
   const upright = Math.atan(Math.tan(angle));
   pen.save();
   pen.translate(box.x, box.y);
