@@ -156,7 +156,10 @@ mod tests {
     use super::*;
 
     fn shown(line: &TimeLine, after: u64) -> Vec<(String, f64, Option<f64>)> {
-        let all = line.after(after)["stretches"].as_array().cloned().unwrap_or_default();
+        let all = line.after(after)["stretches"]
+            .as_array()
+            .cloned()
+            .unwrap_or_default();
         let one = |s: &Value| {
             let name = s["name"].as_str().unwrap_or_default().to_string();
             (name, s["from_s"].as_f64().expect("a time"), s["to_s"].as_f64())

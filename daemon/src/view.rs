@@ -31,7 +31,11 @@ impl page::Source for View {
     }
 
     fn timeline(&self, after: u64) -> String {
-        let line = self.0.timeline.lock().expect("nobody panics holding the time line");
+        let line = self
+            .0
+            .timeline
+            .lock()
+            .expect("nobody panics holding the time line");
         line.after(after).to_string()
     }
 

@@ -133,7 +133,12 @@ impl Watcher {
         let causes = self.shared.halt.decided().0;
         for CauseCount { cause, began, .. } in &self.counts {
             if causes.has(*cause) {
-                line.stands(What::Halt, &cause.names().join(""), "the body is halted", seconds(*began));
+                line.stands(
+                    What::Halt,
+                    &cause.names().join(""),
+                    "the body is halted",
+                    seconds(*began),
+                );
             }
         }
         line.only(What::Halt, &causes.names(), now_s, |_| None);

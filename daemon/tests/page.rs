@@ -29,7 +29,12 @@ fn clicks_on_halt_and_reset_halt_and_free_the_body() {
     browser.size(1400, 900);
     browser.open(&address);
     browser.sees("document.body?.dataset.connected === 'true'");
-    let emergency = || stage.causes("clicked").iter().any(|cause| cause == "emergency stop");
+    let emergency = || {
+        stage
+            .causes("clicked")
+            .iter()
+            .any(|cause| cause == "emergency stop")
+    };
     assert!(!emergency());
     browser.click("#halt");
     wait_for("the daemon is halted", emergency);
@@ -65,21 +70,25 @@ fn a_layer_shows_when_it_is_plugged_and_goes_when_it_is_killed() {
     browser.sees(drawn);
     browser.sees("document.querySelector('#latency [data-latency=wander]')");
     browser.sees("document.querySelector('#timeline-lanes [data-lane=\"layer wander\"]')");
-    browser.sees("document.querySelector('#wiring .tap[data-holds=true] .constant').textContent.endsWith(' s')");
-    browser.sees("[...document.querySelectorAll('#wiring .pulse')].some((pulse) => pulse.getAnimations().length > 0)");
+    browser
+        .sees("document.querySelector('#wiring .tap[data-holds=true] .constant').textContent.endsWith(' s')");
+    browser.sees(
+        "[...document.querySelectorAll('#wiring .pulse')].some((pulse) => pulse.getAnimations().length > 0)",
+    );
     let pid = wander.pid();
     wander.kill();
     browser.sees(&format!("{drawn} === null"));
     browser.sees("document.querySelector('#latency [data-latency=wander]') === null");
     let died = format!("layer wander (pid {pid}) died");
-    browser.sees(&format!("document.querySelector('#events').textContent.includes('{died}')"));
+    browser.sees(&format!(
+        "document.querySelector('#events').textContent.includes('{died}')"
+    ));
     assert_eq!(browser.complaints, [""; 0]);
     assert!(daemon.leave().success());
 }
 
 /// Parts of the page that can be seen, by their views.
-const SHOWN: &str =
-    "[...document.querySelectorAll('main > section')].filter((s) => s.offsetHeight > 0).map((s) => s.dataset.view).join()";
+const SHOWN: &str = "[...document.querySelectorAll('main > section')].filter((s) => s.offsetHeight > 0).map((s) => s.dataset.view).join()";
 
 /// What a thumb would miss: it is to be pressed, can be seen and is lower than 40 pixels.
 const SMALL: &str = "[...document.querySelectorAll('button, input, #views a, #wires tbody a')].filter((b) => \

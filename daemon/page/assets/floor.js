@@ -99,7 +99,7 @@ function drawFloor(pen, pixel) {
     pen.restore();
     const size = 9.5 * pixel;
     const along = box.w >= box.h ? 0 : Math.PI / 2;
-    if (box.name && Math.max(box.w, box.h) > box.name.length * 0.6 * size) nameBox(pen, box, (box.heading ?? 0) + along, size);
+    if (box.name && Math.min(box.w, box.h) > size && Math.max(box.w, box.h) > box.name.length * 0.6 * size) nameBox(pen, box, (box.heading ?? 0) + along, size);
   }
 }
 

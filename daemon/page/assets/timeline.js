@@ -147,7 +147,8 @@ function drawLane({ pen, wide, begin, colour }, kind, row, top) {
     const left = Math.max(0, x(stretch.from_s));
     const right = Math.min(wide, x(Math.min(now, stretch.to_s ?? now)));
     const chosen = stretch.number === (pointed ?? pinned);
-    pen.fillStyle = colour(chosen ? "ink" : colours[kind]);
+    // A reflex is everyday life, and no alarm.
+    pen.fillStyle = colour(chosen ? "ink" : stretch.kind === "halt" && stretch.name === "reflex" ? "quiet" : colours[kind]);
     // A moment is as wide as can be seen.
     const shown = Math.max(2.5, right - left);
     pen.fillRect(Math.min(left, wide - shown), top + 4, shown, LANE - 9);

@@ -48,7 +48,7 @@ export function showWire(state) {
 function tell(wire, state) {
   const taps = listed(state.taps);
   const acts = taps.filter((tap) => tap.from === name);
-  const met = taps.filter((tap) => tap.to === name || branchesOf(name).includes(tap.to));
+  const met = taps.filter((tap) => tap.from !== name).filter((tap) => tap.to === name || branchesOf(name).includes(tap.to));
   const one = (tap) => `${tap.from} ${tap.kind === "inhibit" ? "inhibits" : "suppresses"} ${tap.to}` +
     (tap.holds ? ` (holds, ${span(tap.remaining_ms)} left)` : "");
   const lines = wire ? [

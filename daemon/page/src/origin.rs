@@ -152,7 +152,10 @@ mod tests {
     #[test]
     fn the_origin_is_the_page_itself() {
         let host = Some("127.0.0.1:8086");
-        assert_eq!(here(&head("POST", host, Some("http://127.0.0.1:8086"))), Verdict::Welcome);
+        assert_eq!(
+            here(&head("POST", host, Some("http://127.0.0.1:8086"))),
+            Verdict::Welcome
+        );
         for origin in [
             "null",
             "http://127.0.0.1:3000",

@@ -4,8 +4,8 @@ use std::net::IpAddr;
 
 use crate::Source;
 use crate::answer::Answer;
-use crate::request::{Head, Unread};
 use crate::origin::{self, Verdict};
+use crate::request::{Head, Unread};
 use crate::{Token, assets};
 
 /// The answer to a request.

@@ -32,7 +32,9 @@ impl Token {
         let differ = ours
             .iter()
             .zip(sent)
-            .fold(ours.len() ^ sent.len(), |differ, (a, b)| differ | usize::from(a ^ b));
+            .fold(ours.len() ^ sent.len(), |differ, (a, b)| {
+                differ | usize::from(a ^ b)
+            });
         scheme.eq_ignore_ascii_case("bearer") && differ == 0
     }
 }
@@ -68,7 +70,13 @@ mod tests {
 
     #[test]
     fn a_token_is_neither_short_nor_strange() {
-        for text in ["", "short", "0123456789 abcdef", "0123456789abcdé", &"x".repeat(513)] {
+        for text in [
+            "",
+            "short",
+            "0123456789 abcdef",
+            "0123456789abcdé",
+            &"x".repeat(513),
+        ] {
             assert_eq!(Token::new(text), None, "{text}");
         }
     }

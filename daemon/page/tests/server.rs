@@ -142,10 +142,7 @@ fn the_time_line_is_asked_for_what_is_new() {
         body(&ask(&server, "GET", "/api/timeline?after=17", "")),
         "{\"changes\":17}"
     );
-    assert_eq!(
-        status(&ask(&server, "GET", "/api/timeline?after=x", "")),
-        "400"
-    );
+    assert_eq!(status(&ask(&server, "GET", "/api/timeline?after=x", "")), "400");
     assert_eq!(status(&ask(&server, "POST", "/api/timeline", "")), "405");
 }
 

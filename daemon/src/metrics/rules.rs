@@ -47,7 +47,10 @@ fn every_rule_is_about_something_that_is_served() {
 
 #[test]
 fn every_cause_in_a_rule_is_one_and_every_fault_is_in_it() {
-    let rule = RULES.split("cause=~\"").nth(1).and_then(|rest| rest.split('"').next());
+    let rule = RULES
+        .split("cause=~\"")
+        .nth(1)
+        .and_then(|rest| rest.split('"').next());
     let named: BTreeSet<&str> = rule.expect("a rule tells causes apart").split('|').collect();
     let ordinary = ["start", "reflex", "emergency stop", "shutdown"];
     let faults: BTreeSet<&str> = Causes::named()
@@ -61,6 +64,9 @@ fn every_cause_in_a_rule_is_one_and_every_fault_is_in_it() {
 fn every_family_stands_in_the_table() {
     let told = TABLE.replace("`, `_", "` `subsumed_tap_");
     for family in families() {
-        assert!(told.contains(&format!("`{family}`")), "{family} is not in metrics.md");
+        assert!(
+            told.contains(&format!("`{family}`")),
+            "{family} is not in metrics.md"
+        );
     }
 }

@@ -41,8 +41,18 @@ impl Browser {
         let mut child = Command::new("sh")
             .args(["-c", LAUNCH])
             .arg(program)
-            .args(["--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run"])
-            .args(["--disable-background-networking", "--disable-component-update", "--disable-sync"])
+            .args([
+                "--headless",
+                "--no-sandbox",
+                "--disable-gpu",
+                "--disable-quic",
+                "--no-first-run",
+            ])
+            .args([
+                "--disable-background-networking",
+                "--disable-component-update",
+                "--disable-sync",
+            ])
             .args(["--disable-dev-shm-usage", "--remote-debugging-pipe"])
             .arg(format!("--user-data-dir={}", folder.display()))
             .stdin(Stdio::piped())
@@ -63,7 +73,15 @@ impl Browser {
             }
         });
         let (tab, complaints) = (String::new(), Vec::new());
-        let mut browser = Browser { child, told, heard, asked: 0, tab, folder, complaints };
+        let mut browser = Browser {
+            child,
+            told,
+            heard,
+            asked: 0,
+            tab,
+            folder,
+            complaints,
+        };
         let made = browser.ask("Target.createTarget", &json!({"url": "about:blank"}));
         let joined = browser.ask(
             "Target.attachToTarget",
@@ -135,8 +153,13 @@ impl Browser {
              const b = e.getBoundingClientRect(); return [b.x + b.width / 2, b.y + b.height / 2]; }})()"
         ));
         for kind in ["mouseMoved", "mousePressed", "mouseReleased"] {
-            let (button, clicks) = if kind == "mouseMoved" { ("none", 0) } else { ("left", 1) };
-            let event = json!({"type": kind, "x": place[0], "y": place[1], "button": button, "clickCount": clicks});
+            let (button, clicks) = if kind == "mouseMoved" {
+                ("none", 0)
+            } else {
+                ("left", 1)
+            };
+            let event =
+                json!({"type": kind, "x": place[0], "y": place[1], "button": button, "clickCount": clicks});
             self.ask("Input.dispatchMouseEvent", &event);
         }
     }
