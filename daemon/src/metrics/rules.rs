@@ -61,6 +61,13 @@ fn every_cause_in_a_rule_is_one_and_every_fault_is_in_it() {
 }
 
 #[test]
+fn what_never_was_is_a_plain_nought() {
+    let text = super::text(&json!({"creature": "allen", "layers": [{"name": "avoid"}]}));
+    assert!(text.contains("cause=\"emergency stop\"} 0\n"), "{text}");
+    assert!(!text.contains("} -0\n"), "{text}");
+}
+
+#[test]
 fn every_family_stands_in_the_table() {
     let told = TABLE.replace("`, `_", "` `subsumed_tap_");
     for family in families() {
