@@ -8,13 +8,13 @@ const AXIS = 20;
 const NEAR = 7;
 const PERIOD_MS = 1000;
 const KEPT_S = 660;
-const KINDS = ["halt", "overrun", "layer", "tap"];
+const KINDS = ["halt", "overrun", "reflex", "layer", "tap"];
 const canvas = document.getElementById("timeline");
 const names = document.getElementById("timeline-lanes");
 const readout = document.getElementById("timeline-value");
 const choices = [...document.querySelectorAll("#timeline-span button")];
 const hint = readout.textContent;
-const colours = { halt: "bad", overrun: "hold", layer: "accent", tap: "live" };
+const colours = { halt: "bad", overrun: "hold", reflex: "quiet", layer: "accent", tap: "live" };
 let minutes = 2;
 let stretches = new Map();
 let changes = 0;
@@ -65,7 +65,9 @@ function lanes(begin) {
   for (const stretch of stretches.values()) {
     if ((stretch.to_s ?? now) < begin || stretch.from_s > now) continue;
     const named = stretch.kind === "layer" || stretch.kind === "tap" ? stretch.name : "";
-    const key = `${stretch.kind} ${named}`;
+    // A reflex is everyday life and no alarm: it has a lane of its own.
+    const kind = stretch.kind === "halt" && stretch.name === "reflex" ? "reflex" : stretch.kind;
+    const key = `${kind} ${named}`;
     if (!found.has(key)) found.set(key, []);
     found.get(key).push(stretch);
   }
@@ -78,6 +80,7 @@ function title(key) {
   const [kind, name] = [key.slice(0, key.indexOf(" ")), key.slice(key.indexOf(" ") + 1)];
   if (kind === "halt") return "halts";
   if (kind === "overrun") return "overruns";
+  if (kind === "reflex") return "reflexes";
   return kind === "layer" ? `layer ${name}` : name.replace(">", " → ");
 }
 
@@ -147,8 +150,7 @@ function drawLane({ pen, wide, begin, colour }, kind, row, top) {
     const left = Math.max(0, x(stretch.from_s));
     const right = Math.min(wide, x(Math.min(now, stretch.to_s ?? now)));
     const chosen = stretch.number === (pointed ?? pinned);
-    // A reflex is everyday life, and no alarm.
-    pen.fillStyle = colour(chosen ? "ink" : stretch.kind === "halt" && stretch.name === "reflex" ? "quiet" : colours[kind]);
+    pen.fillStyle = colour(chosen ? "ink" : colours[kind]);
     // A moment is as wide as can be seen.
     const shown = Math.max(2.5, right - left);
     pen.fillRect(Math.min(left, wide - shown), top + 4, shown, LANE - 9);
