@@ -17,6 +17,8 @@ pub const STRETCHES_MAX: usize = 2000;
 pub enum What {
     /// The body was halted; named by the cause.
     Halt,
+    /// A reflex held the body back: everyday life, and no alarm.
+    Reflex,
     /// A layer process was attached; named by the layer.
     Layer,
     /// A tap held; named `from>to`.
@@ -29,6 +31,7 @@ impl What {
     fn word(self) -> &'static str {
         match self {
             What::Halt => "halt",
+            What::Reflex => "reflex",
             What::Layer => "layer",
             What::Tap => "tap",
             What::Overrun => "overrun",

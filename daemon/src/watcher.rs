@@ -93,8 +93,8 @@ impl Watcher {
                 .map_or(0, |c| c.count);
             if *count > before && !self.shared.halt.decided().0.has(*cause) {
                 let at = began.since(self.began).seconds();
-                self.timeline()
-                    .moment(What::Halt, &cause.names().join(""), "halted for a moment", at);
+                let (name, text) = (cause.names().join(""), "the body was halted for a moment");
+                self.timeline().moment(halted_by(*cause), &name, text, at);
             }
             let unseen = count - before - u64::from(causes.has(*cause) && !self.causes.has(*cause));
             if *cause == Causes::REFLEX || before == *count || before == 0 || unseen == 0 {
@@ -133,15 +133,13 @@ impl Watcher {
         let causes = self.shared.halt.decided().0;
         for CauseCount { cause, began, .. } in &self.counts {
             if causes.has(*cause) {
-                line.stands(
-                    What::Halt,
-                    &cause.names().join(""),
-                    "the body is halted",
-                    seconds(*began),
-                );
+                let (name, text) = (cause.names().join(""), "the body was halted");
+                line.stands(halted_by(*cause), &name, text, seconds(*began));
             }
         }
-        line.only(What::Halt, &causes.names(), now_s, |_| None);
+        for what in [What::Halt, What::Reflex] {
+            line.only(what, &causes.names(), now_s, |_| None);
+        }
         let names: Vec<&str> = attached.iter().map(|a| a.plug.layer.as_str()).collect();
         for a in &attached {
             let text = format!("level {}, pid {}", a.plug.level, a.plug.pid);
@@ -227,6 +225,15 @@ impl Watcher {
             status.extend(view);
         }
         (status, windows)
+    }
+}
+
+/// What a cause of a halt is on the time line.
+fn halted_by(cause: Causes) -> What {
+    if cause == Causes::REFLEX {
+        What::Reflex
+    } else {
+        What::Halt
     }
 }
 

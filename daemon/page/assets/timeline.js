@@ -65,9 +65,7 @@ function lanes(begin) {
   for (const stretch of stretches.values()) {
     if ((stretch.to_s ?? now) < begin || stretch.from_s > now) continue;
     const named = stretch.kind === "layer" || stretch.kind === "tap" ? stretch.name : "";
-    // A reflex is everyday life and no alarm: it has a lane of its own.
-    const kind = stretch.kind === "halt" && stretch.name === "reflex" ? "reflex" : stretch.kind;
-    const key = `${kind} ${named}`;
+    const key = `${stretch.kind} ${named}`;
     if (!found.has(key)) found.set(key, []);
     found.get(key).push(stretch);
   }
@@ -171,7 +169,7 @@ function words({ kind, name, text, from_s: from, to_s: to }) {
   const open = to === null || to > now;
   const when = open ? `since ${moment(from)}` : to === from ? `at ${moment(from)}` : `${moment(from)} to ${moment(to)}`;
   const long = to === from ? "" : ` (${span(((open ? now : to) - from) * 1000)})`;
-  if (kind === "halt") return `${text}: ${name}, ${when}${long}`;
+  if (kind === "halt" || kind === "reflex") return `${text}: ${name}, ${when}${long}`;
   if (kind === "tap") return `${name.replace(">", ` ${text} `)}, ${when}${long}`;
   if (kind === "layer") return `layer ${name} attached ${when}${long}: ${text}`;
   return `${text}, ${when}${long}`;
