@@ -121,7 +121,7 @@ fn every_view_has_an_address_and_fits_a_phone() {
         assert_eq!(browser.value(SMALL), "", "{view}");
         assert_eq!(browser.value(BEYOND), 0, "{view} is wider than the phone");
     }
-    browser.sees("document.querySelector('#wire-facts').textContent.includes('polar')");
+    browser.sees("document.querySelector('#wire-facts').textContent.includes('feelforce.map')");
     browser.value("history.back()");
     browser.sees("document.body.dataset.view === 'events'");
     browser.open(&format!("{address}#/"));
