@@ -30,6 +30,7 @@ pub mod running;
 pub mod segment;
 pub mod status;
 pub mod threads;
+pub mod timeline;
 pub mod view;
 pub mod virtual_run;
 pub mod watchdog;

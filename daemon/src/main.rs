@@ -1,6 +1,7 @@
 //! `subsumed`: runs a creature.
 
 use std::net::SocketAddr;
+use std::path::Path;
 use std::process::ExitCode;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -22,6 +23,7 @@ use ipc::wire::iceoryx::Domain;
 use ipc::wiring::creature::Creature;
 use ipc::wiring::directory::output_ports;
 use ipc::wiring::{Source, check};
+use page::Token;
 
 #[global_allocator]
 static ALLOCATOR: daemon::alloc::Counting = daemon::alloc::Counting;
@@ -77,6 +79,9 @@ fn load(options: &Options) -> Result<(Creature, String), String> {
     }
     if options.seconds.is_some_and(|s| !s.is_finite() || s <= 0.0) {
         return Err("--seconds: expected a number of seconds above zero".into());
+    }
+    if let Some(file) = &options.page_token {
+        token(file)?;
     }
     Ok((creature, source.text))
 }
@@ -141,10 +146,27 @@ fn serve_page(options: &Options, running: &Running) -> Result<Option<page::Serve
     if options.no_page || options.headless {
         return Ok(None);
     }
-    let address = SocketAddr::from(([127, 0, 0, 1], options.page_port));
-    page::serve(address, Arc::new(View(running.shared.clone())))
-        .map(Some)
-        .map_err(|e| e.to_string())
+    let address = SocketAddr::from((options.page_address, options.page_port));
+    let view = Arc::new(View(running.shared.clone()));
+    let server = match &options.page_token {
+        None => page::serve(address, view),
+        Some(file) => page::serve_others(address, token(file)?, view),
+    };
+    server.map(Some).map_err(|e| e.to_string())
+}
+
+/// The token in a file.
+fn token(file: &Path) -> Result<Token, String> {
+    let text = std::fs::read_to_string(file).map_err(|e| format!("--page-token {}: {e}", file.display()))?;
+    Token::new(&text).ok_or_else(|| {
+        format!(
+            "--page-token {}: expected one line of {} to {} letters, digits and signs; \
+             `openssl rand -hex 16` makes one",
+            file.display(),
+            Token::BYTES_MIN,
+            Token::BYTES_MAX
+        )
+    })
 }
 
 fn serve_metrics(options: &Options, running: &Running) -> Result<Vec<Metrics>, String> {

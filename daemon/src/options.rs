@@ -34,9 +34,16 @@ pub struct Options {
     /// Name of the process that runs the body (see `subsumed-body`); without it, this one does
     #[arg(long, value_name = "NAME")]
     pub body: Option<String>,
-    /// Port of the live page on 127.0.0.1; 0 for any that is free
+    /// Port of the live page; 0 for any that is free
     #[arg(long, default_value_t = 4686, value_name = "N")]
     pub page_port: u16,
+    /// Address of the live page; any but a loopback one needs --page-token
+    #[arg(long, default_value = "127.0.0.1", value_name = "IP")]
+    pub page_address: std::net::IpAddr,
+    /// File with the token (16 characters or more) that others than this machine have to send to see the live page
+    /// and to press its buttons; neither is encrypted
+    #[arg(long, value_name = "FILE")]
+    pub page_token: Option<PathBuf>,
     /// No live page
     #[arg(long)]
     pub no_page: bool,

@@ -30,6 +30,7 @@ use crate::plugs::Plugs;
 use crate::recorder::{self, Recorder};
 use crate::status::{Rates, Record, Watched, WatchedTap};
 use crate::threads::{Crew, Start};
+use crate::timeline::TimeLine;
 use crate::watcher::Watcher;
 
 /// What the threads of the daemon share, none of them real-time.
@@ -50,6 +51,8 @@ pub struct Shared {
     floor: Mutex<Value>,
     /// What happens, for those who record it.
     pub recorder: Recorder,
+    /// What stood when, for those who look back.
+    pub timeline: Mutex<TimeLine>,
     status: Mutex<Arc<Value>>,
 }
 
@@ -152,6 +155,7 @@ pub fn start(
         domain,
         floor: Mutex::new(floor),
         recorder: Recorder::new(manifest, settings.flight.is_some()),
+        timeline: Mutex::default(),
         status: Mutex::new(Arc::new(json!({}))),
     });
     let (stop, leave) = (Arc::new(AtomicBool::new(false)), Arc::new(AtomicBool::new(false)));

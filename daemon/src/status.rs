@@ -281,15 +281,19 @@ pub struct WatchedTap {
     pub joined: bool,
 }
 
-/// Shows a tap: whether it holds, and for how long still.
-pub fn tap(t: &WatchedTap, now: Time) -> Value {
+/// The window that a tap's newest message opened, over or not; none while it stands nowhere or is silent.
+pub fn window(t: &WatchedTap, now: Time) -> Option<Window> {
     // What is stamped in the future is no message: see the register.
     let reading = t.reader.read().filter(|r| t.joined && r.stamp <= now + AHEAD_MAX);
-    let window = reading.map(|r| Window {
+    reading.map(|r| Window {
         stamp: r.stamp.min(now),
         time_constant: t.time_constant,
-    });
-    let remaining = window.map_or(Span::ZERO, |w| w.remaining(now));
+    })
+}
+
+/// Shows a tap: whether it holds, and for how long still.
+pub fn tap(t: &WatchedTap, now: Time) -> Value {
+    let remaining = window(t, now).map_or(Span::ZERO, |w| w.remaining(now));
     let counts = t.gauge.counts();
     json!({
         "from": t.from, "to": t.to, "kind": t.how, "layer": t.layer.0, "level": t.layer.1, "time_constant_ms": t.time_constant.as_millis_f64(),

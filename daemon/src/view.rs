@@ -17,9 +17,10 @@ impl page::Source for View {
     fn plan(&self) -> String {
         let shared = &self.0;
         let floor = shared.floor();
+        let body = shared.creature.body.as_ref().map(|b| b.declaration.name);
         let radius = floor.get("robot_radius_m").cloned().unwrap_or(Value::Null);
         json!({
-            "creature": shared.name, "floor": floor, "robot_radius_m": radius,
+            "creature": shared.name, "body": body, "floor": floor, "robot_radius_m": radius,
             "graph": graph(&shared.creature, &shared.plugs.attached()),
             "hierarchies": hierarchies(&shared.creature),
         })
@@ -28,6 +29,15 @@ impl page::Source for View {
 
     fn state(&self) -> String {
         self.0.status().to_string()
+    }
+
+    fn timeline(&self, after: u64) -> String {
+        let line = self
+            .0
+            .timeline
+            .lock()
+            .expect("nobody panics holding the time line");
+        line.after(after).to_string()
     }
 
     fn halt(&self) {

@@ -3,11 +3,13 @@
 //! Must never touch a real-time thread, nor decide anything but who broke the policy.
 
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Mutex};
+use std::sync::{Arc, Mutex, MutexGuard};
 use std::thread::JoinHandle;
 use std::time::Duration;
 
 use ipc::clock::{self, Time};
+use ipc::tap::Window;
+use ipc::wiring::creature::How;
 use serde_json::{Value, json};
 
 use crate::alloc;
@@ -15,6 +17,7 @@ use crate::gate::Causes;
 use crate::halt::CauseCount;
 use crate::running::Shared;
 use crate::status::{self, Rates, Record, Watched, WatchedTap};
+use crate::timeline::{TimeLine, What};
 
 /// Looks at everything ten times a second.
 pub(crate) struct Watcher {
@@ -65,12 +68,15 @@ impl Watcher {
             .iter_mut()
         {
             if let Some(text) = record.drain() {
+                let at = now.since(self.began).seconds();
+                self.timeline().moment(What::Overrun, &record.name, &text, at);
                 self.shared.events.note("overrun", Some(&record.name), text);
             }
         }
         self.note_halts();
         self.shared.plugs.police(now);
-        let status = self.status(now);
+        let (status, taps) = self.status(now);
+        self.keep_timeline(now, &taps);
         self.shared.set_status(status);
     }
 
@@ -85,6 +91,11 @@ impl Watcher {
                 .iter()
                 .find(|c| c.cause == *cause)
                 .map_or(0, |c| c.count);
+            if *count > before && !self.shared.halt.decided().0.has(*cause) {
+                let at = began.since(self.began).seconds();
+                let (name, text) = (cause.names().join(""), "the body was halted for a moment");
+                self.timeline().moment(halted_by(*cause), &name, text, at);
+            }
             let unseen = count - before - u64::from(causes.has(*cause) && !self.causes.has(*cause));
             if *cause == Causes::REFLEX || before == *count || before == 0 || unseen == 0 {
                 continue;
@@ -109,6 +120,42 @@ impl Watcher {
             .note_causes("halt", None, &causes.names(), text);
     }
 
+    fn timeline(&self) -> MutexGuard<'_, TimeLine> {
+        let line = &self.shared.timeline;
+        line.lock().expect("nobody panics holding the time line")
+    }
+
+    /// Keeps what stands now, to a tenth of a second: causes of a halt, attached layers, taps that hold.
+    fn keep_timeline(&self, now: Time, taps: &[(String, &'static str, Window)]) {
+        let seconds = |at: Time| at.since(self.began).seconds();
+        let (attached, now_s) = (self.shared.plugs.attached(), seconds(now));
+        let mut line = self.timeline();
+        let causes = self.shared.halt.decided().0;
+        for CauseCount { cause, began, .. } in &self.counts {
+            if causes.has(*cause) {
+                let (name, text) = (cause.names().join(""), "the body was halted");
+                line.stands(halted_by(*cause), &name, text, seconds(*began));
+            }
+        }
+        for what in [What::Halt, What::Reflex] {
+            line.only(what, &causes.names(), now_s, |_| None);
+        }
+        let names: Vec<&str> = attached.iter().map(|a| a.plug.layer.as_str()).collect();
+        for a in &attached {
+            let text = format!("level {}, pid {}", a.plug.level, a.plug.pid);
+            line.stands(What::Layer, &a.plug.layer, &text, now_s);
+        }
+        line.only(What::Layer, &names, now_s, |name| {
+            let events = self.shared.events.after(0);
+            let last = events.iter().rev().find(|e| e.layer.as_deref() == Some(name));
+            last.map(|e| e.text.clone())
+        });
+        for (name, how, window) in taps {
+            let from = seconds(window.stamp);
+            line.holds(What::Tap, name, how, from, from + window.time_constant.seconds());
+        }
+    }
+
     fn count(&self, counted: &CauseCount, causes: Causes) -> Value {
         json!({
             "cause": counted.cause.names().join(""), "count": counted.count,
@@ -117,7 +164,8 @@ impl Watcher {
         })
     }
 
-    fn status(&mut self, now: Time) -> Value {
+    /// The status, and the windows of the taps in it.
+    fn status(&mut self, now: Time) -> (Value, Vec<(String, &'static str, Window)>) {
         let attached = self.shared.plugs.attached();
         let mut wires: Vec<Value> = self
             .wires
@@ -125,6 +173,7 @@ impl Watcher {
             .map(|w| status::wire(w, &mut self.rates, now))
             .collect();
         let mut taps: Vec<Value> = self.taps.iter().map(|t| status::tap(t, now)).collect();
+        let mut windows: Vec<_> = self.taps.iter().filter_map(|t| windowed(t, now)).collect();
         let mut layers = status::layers(&self.records.lock().expect("nobody panics holding the records"));
         for a in &attached {
             layers.push(status::attached(a));
@@ -152,6 +201,7 @@ impl Watcher {
                     joined: t.joined,
                 };
                 taps.push(status::tap(&watched, now));
+                windows.extend(windowed(&watched, now));
             }
         }
         self.rates.keep_only(&wires);
@@ -174,6 +224,25 @@ impl Watcher {
         if let (Some(status), Value::Object(view)) = (status.as_object_mut(), view) {
             status.extend(view);
         }
-        status
+        (status, windows)
     }
+}
+
+/// What a cause of a halt is on the time line.
+fn halted_by(cause: Causes) -> What {
+    if cause == Causes::REFLEX {
+        What::Reflex
+    } else {
+        What::Halt
+    }
+}
+
+/// A tap by name, what it does, and the window of its newest message.
+fn windowed(tap: &WatchedTap, now: Time) -> Option<(String, &'static str, Window)> {
+    let how = match tap.how {
+        How::Suppress => "suppresses",
+        How::Inhibit => "inhibits",
+    };
+    let window = status::window(tap, now)?;
+    Some((format!("{}>{}", tap.from, tap.to), how, window))
 }

@@ -30,6 +30,7 @@ export function showHalt(halt) {
   const halted = halt?.halted;
   if (typeof halted !== "boolean") {
     delete banner.dataset.halted;
+    delete banner.dataset.reflex;
     say(word, "Unknown whether halted");
     say(causes, "");
     return;
@@ -38,7 +39,10 @@ export function showHalt(halt) {
   // A refusal stays in sight until the body's state has changed.
   if (banner.dataset.halted !== undefined && banner.dataset.halted !== String(halted)) answer.hidden = true;
   banner.dataset.halted = String(halted);
-  say(word, halted ? "HALTED" : "Running");
+  // A reflex is everyday life: it lets go by itself within a moment.
+  const reflex = halted && listed(halt.causes).every((cause) => cause === "reflex") && listed(halt.causes).length > 0;
+  banner.dataset.reflex = String(reflex);
+  say(word, !halted ? "Running" : reflex ? "Held back" : "HALTED");
   const reasons = listed(halt.causes).join(", ");
   const latched = halt.latched ? " – stays until reset" : "";
   say(causes, halted ? `${reasons || "no cause given"}${since}${latched}` : "");

@@ -1,13 +1,16 @@
 // The page: asks for the state ten times a second and shows it.
 
-import { get } from "./daemon.js";
+import { get, TokenWanted } from "./daemon.js";
 import { showEvents } from "./events.js";
 import { listen, showHalt } from "./halt.js";
+import { nameTitle, onView } from "./views.js";
 import { showLatency } from "./latency.js";
 import { setNest, showNest } from "./nest.js";
+import { forgetTimeline, redrawTimeline, showTimeline } from "./timeline.js";
+import { showWire } from "./wire.js";
 import { showWires } from "./wires.js";
 import { showWiring, setWiring } from "./wiring.js";
-import { setWorld, showWorld } from "./world.js";
+import { redraw, setWorld, showWorld } from "./world.js";
 import { listed, moment, say, span } from "./words.js";
 
 const PERIOD_MS = 100;
@@ -15,6 +18,7 @@ const lost = document.getElementById("lost");
 let plan = null;
 let version;
 let heard = null;
+let pid;
 
 function showHead(state) {
   const mode = document.getElementById("mode");
@@ -41,7 +45,7 @@ function setPlan(fresh) {
   plan = fresh;
   const name = fresh.creature ?? "subsumed";
   say(document.getElementById("creature"), name);
-  document.title = `${name} – subsumed`;
+  nameTitle(name);
   setWorld(fresh);
   setWiring(fresh.graph ?? {});
   setNest(fresh);
@@ -67,7 +71,7 @@ function disconnected(fault) {
   document.body.dataset.connected = "false";
   const seconds = heard === null ? 0 : Math.round((performance.now() - heard) / 1000);
   say(document.getElementById("lost-age"), seconds > 0 ? `What you see is ${span(seconds * 1000)} old.` : "");
-  lost.hidden = false;
+  lost.hidden = fault instanceof TokenWanted;
   // Whether the body is halted is not known any longer, whatever was heard last.
   showHalt(undefined);
 }
@@ -80,11 +84,15 @@ async function beat() {
       version = state.graph_version;
     }
     connected();
+    if (state.pid !== pid) forgetTimeline();
+    pid = state.pid;
     show(showHalt, state.halt);
     show(showHead, state);
     show(showWorld, state);
     show(showNest, state);
     show(showWiring, state);
+    show(showTimeline, state);
+    show(showWire, state);
     show(showWires, state.wires);
     show(showLatency, state.layers);
     show(showEvents, state.events);
@@ -101,4 +109,8 @@ async function run() {
 }
 
 listen();
+onView(() => {
+  show(redraw);
+  show(redrawTimeline);
+});
 run();

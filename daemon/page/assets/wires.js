@@ -1,5 +1,6 @@
 // The table of wires: what each carries now.
 
+import { addressOf } from "./views.js";
 import { listed, number, say, span, value } from "./words.js";
 
 const table = document.getElementById("wires");
@@ -12,7 +13,10 @@ function row(name) {
   const head = document.createElement("th");
   head.scope = "row";
   const kind = document.createElement("small");
-  head.append(name, " ", kind);
+  const link = document.createElement("a");
+  link.href = addressOf(name);
+  link.textContent = name;
+  head.append(link, " ", kind);
   const cells = ["value", "number", "number", "number"].map((style) => {
     const cell = document.createElement("td");
     cell.className = style;

@@ -2,11 +2,15 @@
 //
 // The picture itself comes with the plan, drawn by the library that also draws files; nothing is laid out here.
 
+import { layPulses, runPulses } from "./pulses.js";
+import { addressOf } from "./views.js";
 import { listed, number, say, span, value } from "./words.js";
 
 const NS = "http://www.w3.org/2000/svg";
 const place = document.getElementById("wiring");
 const readout = document.getElementById("wire-value");
+const link = document.getElementById("wire-link");
+const size = document.getElementById("wiring-size");
 const hint = readout.textContent;
 let nets = new Map();
 let taps = new Map();
@@ -14,6 +18,19 @@ let counted = new Map();
 let carried = new Map();
 let pointed = null;
 let pinned = null;
+
+size.addEventListener("click", () => {
+  const large = !place.classList.contains("large");
+  place.classList.toggle("large", large);
+  size.setAttribute("aria-pressed", String(large));
+  say(size, large ? "Fit" : "Enlarge");
+});
+
+/** The ports that a wire leads to in the picture. */
+export function branchesOf(name) {
+  const branches = nets.get(name)?.querySelectorAll(".branch") ?? [];
+  return [...branches].map((branch) => branch.dataset.to).filter((to) => to);
+}
 
 /** Shows the picture of a graph. */
 export function setWiring(graph) {
@@ -49,6 +66,7 @@ function enliven(name, group) {
     wide.setAttribute("class", "catch");
     line.before(wide);
   }
+  layPulses(group);
   const point = () => { pointed = name; mark(); };
   const leave = () => { pointed = null; mark(); };
   const pin = () => { pinned = pinned === name ? null : name; mark(); };
@@ -101,6 +119,8 @@ function read() {
   const chosen = pointed ?? pinned;
   readout.classList.toggle("reading", chosen !== null);
   say(readout, chosen === null ? hint : words(chosen));
+  link.hidden = chosen === null;
+  if (chosen !== null) link.href = addressOf(chosen);
   if (pointed !== null) say(nets.get(pointed).querySelector("title"), words(pointed));
 }
 
@@ -109,7 +129,9 @@ export function showWiring(state) {
   carried = new Map(listed(state.wires).filter((wire) => wire?.wire).map((wire) => [wire.wire, wire]));
   for (const [name, group] of nets) {
     const messages = carried.get(name)?.messages;
-    group.classList.toggle("live", counted.has(name) && counted.get(name) !== messages);
+    const live = counted.has(name) && messages !== undefined && counted.get(name) !== messages;
+    group.classList.toggle("live", live);
+    if (live) runPulses(group);
     if (messages !== undefined) counted.set(name, messages);
   }
   const states = new Map(listed(state.taps).map((tap) => [`${tap.from}>${tap.to}`, tap]));

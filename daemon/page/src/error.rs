@@ -13,7 +13,7 @@ pub enum ServeError {
         /// The address that was asked for.
         address: SocketAddr,
     },
-    /// The address can be reached from other machines.
+    /// The address can be reached from other machines, and there is no token.
     NotLoopback {
         /// The address that was asked for.
         address: SocketAddr,
@@ -44,8 +44,8 @@ impl fmt::Display for ServeError {
             ),
             Self::NotLoopback { address } => write!(
                 out,
-                "the live page is only for this machine and cannot be served on {}: \
-                 use 127.0.0.1 or [::1]",
+                "the live page cannot be served on {}, which others can reach, without a token: \
+                 give one with --page-token FILE, or use 127.0.0.1 or [::1]",
                 address.ip(),
             ),
             Self::Listen { address, source } => write!(

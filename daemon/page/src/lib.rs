@@ -4,16 +4,17 @@
 //! on its own threads, and it has two buttons: halt and reset. It never writes a wire.
 //!
 //! ```text
-//!   browser ──GET /api/plan, /api/state──► worker threads ──► Source::plan, Source::state
-//!           ──POST /api/halt, /api/reset─►                ──► Source::halt, Source::reset
+//!   browser ──GET /api/plan, state, timeline──► worker threads ──► Source::plan, state, timeline
+//!           ──POST /api/halt, /api/reset──────►                ──► Source::halt, reset
 //! ```
 //!
 //! Local words: the *plan* is what stays (the floor and the wiring), the *state* is what moves and
 //! is asked for ten times a second. Both are JSON texts that pass through this crate unread; their
 //! shape is in the crate's README.
 //!
-//! Only loopback addresses are served, and a request whose `Host` or `Origin` names anybody else is
-//! refused, so that a web page from elsewhere cannot read the creature or press its buttons.
+//! Only this machine is served, unless a [`Token`] is given: then others are who send it. A request whose
+//! `Host` or `Origin` names anybody else is refused, so that a web page from elsewhere cannot read the
+//! creature or press its buttons.
 
 mod answer;
 mod assets;
@@ -22,9 +23,11 @@ mod origin;
 mod request;
 mod routes;
 mod server;
+mod token;
 
 pub use error::ServeError;
-pub use server::{Server, serve};
+pub use server::{Server, serve, serve_others};
+pub use token::Token;
 
 /// Where the page gets what it shows, and where its two buttons lead.
 ///
@@ -38,6 +41,11 @@ pub trait Source: Send + Sync {
 
     /// Everything that moves as one JSON object. Asked for ten times a second by each page.
     fn state(&self) -> String;
+
+    /// What changed of the time line after the change numbered `after`, as one JSON object.
+    ///
+    /// Asked for once a second by each page.
+    fn timeline(&self, after: u64) -> String;
 
     /// Halts the creature. Cannot be refused.
     fn halt(&self);

@@ -29,6 +29,10 @@ pub(crate) struct Head {
     pub(crate) method: String,
     /// The path without its query.
     pub(crate) path: String,
+    /// What follows the path's question mark; empty if nothing does.
+    pub(crate) query: String,
+    /// The `Authorization` header.
+    pub(crate) authorization: Option<String>,
     /// The `Host` header.
     pub(crate) host: Option<String>,
     /// The `Origin` header.
@@ -109,6 +113,8 @@ fn parse(bytes: &[u8]) -> Result<Option<(Head, usize)>, Unread> {
     let mut head = Head {
         method: request.method.unwrap_or_default().to_owned(),
         path: path.split('?').next().unwrap_or(path).to_owned(),
+        query: path.split_once('?').map_or("", |(_, query)| query).to_owned(),
+        authorization: None,
         host: None,
         origin: None,
         fetch_site: None,
@@ -118,6 +124,8 @@ fn parse(bytes: &[u8]) -> Result<Option<(Head, usize)>, Unread> {
         let value = String::from_utf8_lossy(header.value).trim().to_owned();
         if header.name.eq_ignore_ascii_case("host") {
             once(&mut head.host, value)?;
+        } else if header.name.eq_ignore_ascii_case("authorization") {
+            once(&mut head.authorization, value)?;
         } else if header.name.eq_ignore_ascii_case("origin") {
             once(&mut head.origin, value)?;
         } else if header.name.eq_ignore_ascii_case("sec-fetch-site") {

@@ -1,18 +1,31 @@
 //! Which request leads where.
 
+use std::net::IpAddr;
+
 use crate::Source;
 use crate::answer::Answer;
+use crate::origin::{self, Verdict};
 use crate::request::{Head, Unread};
-use crate::{assets, origin};
+use crate::{Token, assets};
 
 /// The answer to a request.
-pub(crate) fn answer(head: &Head, source: &dyn Source) -> Answer {
-    if let Some(why) = origin::refusal(head) {
-        return Answer::refusal("403 Forbidden", why);
+pub(crate) fn answer(head: &Head, from: IpAddr, token: Option<&Token>, source: &dyn Source) -> Answer {
+    match origin::verdict(head, from, token) {
+        Verdict::Welcome => {}
+        Verdict::TokenWanted if !head.path.starts_with("/api/") => {}
+        Verdict::TokenWanted => return Answer::refusal("401 Unauthorized", "the token is needed"),
+        Verdict::Refused(why) => return Answer::refusal("403 Forbidden", why),
     }
     match (head.method.as_str(), head.path.as_str()) {
         ("GET", "/api/plan") => Answer::json(source.plan()),
         ("GET", "/api/state") => Answer::json(source.state()),
+        ("GET", "/api/timeline") => {
+            let after = head.query.strip_prefix("after=").map_or(Ok(0), str::parse);
+            match after {
+                Ok(after) => Answer::json(source.timeline(after)),
+                Err(_) => Answer::refusal("400 Bad Request", "after= wants the number of a change"),
+            }
+        }
         ("POST", "/api/halt") => {
             source.halt();
             Answer::json("{\"halted\":true}".to_owned())
@@ -21,7 +34,7 @@ pub(crate) fn answer(head: &Head, source: &dyn Source) -> Answer {
             Ok(()) => Answer::json("{\"reset\":true}".to_owned()),
             Err(why) => Answer::refusal("409 Conflict", &why),
         },
-        (_, "/api/plan" | "/api/state") => method("use GET"),
+        (_, "/api/plan" | "/api/state" | "/api/timeline") => method("use GET"),
         (_, "/api/halt" | "/api/reset") => method("use POST"),
         ("GET", path) => match assets::find(path) {
             Some(asset) => Answer {

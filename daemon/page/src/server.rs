@@ -4,14 +4,14 @@
 //! answers one request and closes it, so that an idle browser holds none of them for long.
 
 use std::io;
-use std::net::{SocketAddr, TcpListener, TcpStream};
+use std::net::{IpAddr, Ipv4Addr, Ipv6Addr, SocketAddr, TcpListener, TcpStream};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::{self, JoinHandle};
 use std::time::Duration;
 
 use crate::error::ServeError;
-use crate::{Source, request, routes};
+use crate::{Source, Token, request, routes};
 
 /// How many requests are answered at once: a browser opens at most six connections to one server.
 const WORKERS_MAX: usize = 6;
@@ -30,7 +30,7 @@ pub struct Server {
     workers: Vec<JoinHandle<()>>,
 }
 
-/// Serves the page on `address` (port 0 takes any free one) until the [`Server`] is stopped.
+/// Serves the page to this machine on `address` (port 0 takes any free one) until the [`Server`] is stopped.
 ///
 /// Its threads inherit the scheduling of the caller: call this from a thread that is not real-time.
 ///
@@ -40,6 +40,23 @@ pub fn serve(address: SocketAddr, source: Arc<dyn Source>) -> Result<Server, Ser
     if !address.ip().is_loopback() {
         return Err(ServeError::NotLoopback { address });
     }
+    open(address, None, source)
+}
+
+/// The same, on any address and also to other machines: who is not on this one has to send `token` with whatever
+/// tells of the creature or halts it. Neither that nor the answers are encrypted.
+///
+/// # Errors
+/// When the address is taken, or the system gives no socket or threads.
+pub fn serve_others(
+    address: SocketAddr,
+    token: Token,
+    source: Arc<dyn Source>,
+) -> Result<Server, ServeError> {
+    open(address, Some(token), source)
+}
+
+fn open(address: SocketAddr, token: Option<Token>, source: Arc<dyn Source>) -> Result<Server, ServeError> {
     let listener = TcpListener::bind(address).map_err(|source| match source.kind() {
         io::ErrorKind::AddrInUse => ServeError::PortTaken { address },
         _ => ServeError::Listen { address, source },
@@ -48,6 +65,7 @@ pub fn serve(address: SocketAddr, source: Arc<dyn Source>) -> Result<Server, Ser
         .local_addr()
         .map_err(|source| ServeError::Listen { address, source })?;
     let listener = Arc::new(listener);
+    let token = Arc::new(token);
     let mut server = Server {
         address: bound,
         stopping: Arc::new(AtomicBool::new(false)),
@@ -55,11 +73,11 @@ pub fn serve(address: SocketAddr, source: Arc<dyn Source>) -> Result<Server, Ser
     };
     for index in 0..WORKERS_MAX {
         let (listener, source) = (Arc::clone(&listener), Arc::clone(&source));
-        let stopping = Arc::clone(&server.stopping);
+        let (stopping, token) = (Arc::clone(&server.stopping), Arc::clone(&token));
         let worker = thread::Builder::new()
             .name(format!("page-{index}"))
             .stack_size(WORKER_STACK_BYTES)
-            .spawn(move || work(&listener, source.as_ref(), &stopping))
+            .spawn(move || work(&listener, token.as_ref().as_ref(), source.as_ref(), &stopping))
             .map_err(|source| ServeError::Thread { source })?;
         server.workers.push(worker);
     }
@@ -78,12 +96,21 @@ impl Server {
         self.join();
     }
 
+    /// Where this process reaches it: an address that means all of them is none to connect to.
+    fn door(&self) -> SocketAddr {
+        match self.address.ip() {
+            ip if !ip.is_unspecified() => self.address,
+            IpAddr::V4(_) => (Ipv4Addr::LOCALHOST, self.address.port()).into(),
+            IpAddr::V6(_) => (Ipv6Addr::LOCALHOST, self.address.port()).into(),
+        }
+    }
+
     fn join(&mut self) {
         // Relaxed is enough: the flag guards no data, and every worker is woken until it saw it.
         self.stopping.store(true, Ordering::Relaxed);
         while self.workers.iter().any(|worker| !worker.is_finished()) {
             // A connection is what a worker waits for.
-            let woken = TcpStream::connect_timeout(&self.address, Duration::from_millis(50));
+            let woken = TcpStream::connect_timeout(&self.door(), Duration::from_millis(50));
             drop(woken);
             thread::sleep(Duration::from_millis(1));
         }
@@ -101,10 +128,12 @@ impl Drop for Server {
 }
 
 /// What a worker does until the server stops.
-fn work(listener: &TcpListener, source: &dyn Source, stopping: &AtomicBool) {
+fn work(listener: &TcpListener, token: Option<&Token>, source: &dyn Source, stopping: &AtomicBool) {
     while !stopping.load(Ordering::Relaxed) {
         match listener.accept() {
-            Ok((stream, _)) if !stopping.load(Ordering::Relaxed) => serve_one(stream, source),
+            Ok((stream, from)) if !stopping.load(Ordering::Relaxed) => {
+                serve_one(stream, from.ip(), token, source);
+            }
             Ok(_) => {}
             Err(_) => thread::sleep(ACCEPT_REST),
         }
@@ -112,10 +141,10 @@ fn work(listener: &TcpListener, source: &dyn Source, stopping: &AtomicBool) {
 }
 
 /// Answers the one request of a connection.
-fn serve_one(mut stream: TcpStream, source: &dyn Source) {
+fn serve_one(mut stream: TcpStream, from: IpAddr, token: Option<&Token>, source: &dyn Source) {
     let asked = request::read(&mut stream);
     let answer = match asked {
-        Ok(head) => Some(routes::answer(&head, source)),
+        Ok(head) => Some(routes::answer(&head, from, token, source)),
         Err(unread) => routes::answer_unread(&unread),
     };
     if let Some(answer) = answer {

@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
-use page::{ServeError, Server, Source, serve};
+use page::{ServeError, Server, Source, Token, serve, serve_others};
 
 /// A source that counts what it is asked.
 #[derive(Default)]
@@ -23,6 +23,10 @@ impl Source for Counted {
 
     fn state(&self) -> String {
         "{\"time_s\":1.5}".to_owned()
+    }
+
+    fn timeline(&self, after: u64) -> String {
+        format!("{{\"changes\":{after}}}")
     }
 
     fn halt(&self) {
@@ -95,7 +99,7 @@ fn the_page_and_all_it_refers_to_is_served() {
         waiting.extend(referred(body(&answer), &["from \"."]));
         seen.push(path);
     }
-    assert!(seen.len() >= 12, "scripts import each other: {seen:?}");
+    assert!(seen.len() >= 16, "scripts import each other: {seen:?}");
 }
 
 /// Paths that follow one of `marks` in `text`, up to the closing quote.
@@ -128,6 +132,43 @@ fn plan_and_state_pass_through_unread() {
         body(&ask(&server, "GET", "/api/state?now", "")),
         "{\"time_s\":1.5}"
     );
+}
+
+#[test]
+fn the_time_line_is_asked_for_what_is_new() {
+    let (server, _) = start();
+    assert_eq!(body(&ask(&server, "GET", "/api/timeline", "")), "{\"changes\":0}");
+    assert_eq!(
+        body(&ask(&server, "GET", "/api/timeline?after=17", "")),
+        "{\"changes\":17}"
+    );
+    assert_eq!(status(&ask(&server, "GET", "/api/timeline?after=x", "")), "400");
+    assert_eq!(status(&ask(&server, "POST", "/api/timeline", "")), "405");
+}
+
+#[test]
+fn others_press_no_button_without_the_token() {
+    let source = Arc::new(Counted::default());
+    let token = Token::new("0123456789abcdef").expect("long enough");
+    let everywhere = SocketAddr::from(([0, 0, 0, 0], 0));
+    let server = serve_others(everywhere, token, source.clone()).expect("a free port");
+    let door = SocketAddr::from(([127, 0, 0, 1], server.address().port()));
+    // To this machine by the name that another would use: as good as from elsewhere.
+    let press = |more: &str| {
+        let mut stream = TcpStream::connect(door).expect("the server listens");
+        let request = format!("POST /api/halt HTTP/1.1\r\nHost: robot.example\r\n{more}\r\n");
+        stream.write_all(request.as_bytes()).expect("the server reads");
+        let mut answer = String::new();
+        stream.read_to_string(&mut answer).expect("an answer in full");
+        status(&answer).to_owned()
+    };
+    assert_eq!(press(""), "401");
+    assert_eq!(press("Authorization: Bearer 0123456789abcdeF\r\n"), "401");
+    assert_eq!(source.halts.load(Ordering::SeqCst), 0);
+    assert_eq!(press("Authorization: Bearer 0123456789abcdef\r\n"), "200");
+    assert_eq!(source.halts.load(Ordering::SeqCst), 1);
+    server.stop();
+    assert_eq!(Arc::strong_count(&source), 1);
 }
 
 #[test]

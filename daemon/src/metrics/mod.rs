@@ -2,6 +2,8 @@
 //!
 //! Must never ask a real-time thread: everything comes from the status that the watcher gathers anyway.
 
+#[cfg(test)]
+mod rules;
 mod serve;
 mod text;
 

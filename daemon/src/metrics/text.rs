@@ -170,7 +170,8 @@ impl Page {
         for (label, value) in labels {
             let _ = write!(self.text, ",{label}=\"{}\"", escaped(value));
         }
-        let _ = writeln!(self.text, "}} {value}");
+        // A sum of nothing is -0: adding 0 takes the sign away.
+        let _ = writeln!(self.text, "}} {}", value + 0.0);
     }
 
     /// `bars` are pairs of an upper bound in microseconds, doubling from 1, and a count.

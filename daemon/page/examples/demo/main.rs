@@ -51,7 +51,7 @@ impl Demo {
 impl Source for Demo {
     fn plan(&self) -> String {
         json!({
-            "creature": "allen", "floor": floor::plan(), "robot_radius_m": 0.2,
+            "creature": "allen", "body": "office", "floor": floor::plan(), "robot_radius_m": 0.2,
             "graph": graph::graph(),
         })
         .to_string()
@@ -73,6 +73,10 @@ impl Source for Demo {
             fields.insert("halt".to_owned(), self.halt_state(&buttons, time_s));
         }
         state.to_string()
+    }
+
+    fn timeline(&self, after: u64) -> String {
+        moving::timeline(self.time_s(), after)
     }
 
     fn halt(&self) {

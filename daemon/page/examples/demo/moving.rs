@@ -66,6 +66,24 @@ pub(crate) fn state(time_s: f64, driven_s: f64, halted: bool) -> Value {
     })
 }
 
+/// The time line: a layer that came, and a tap that held for 2 s every 10 s.
+pub(crate) fn timeline(time_s: f64, after: u64) -> String {
+    let turns = (time_s / 10.0) as u64;
+    let held = (after..turns).map(|turn| {
+        let from_s = turn as f64 * 10.0;
+        json!({
+            "number": turn + 1, "kind": "tap", "name": "avoid.heading>turn.heading", "text": "suppresses",
+            "from_s": from_s, "to_s": from_s + 2.0,
+        })
+    });
+    let came = json!({
+        "number": 0, "kind": "layer", "name": "wander", "text": "level 1, pid 4711",
+        "from_s": 0.0, "to_s": null,
+    });
+    let all: Vec<Value> = held.chain([came]).collect();
+    json!({"changes": turns, "stretches": all}).to_string()
+}
+
 fn on_round(metres: f64) -> (f64, f64, f64) {
     let leg = |index: usize| {
         let (from, to) = (ROUND[index % ROUND.len()], ROUND[(index + 1) % ROUND.len()]);
