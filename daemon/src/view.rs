@@ -22,6 +22,7 @@ impl page::Source for View {
         json!({
             "creature": shared.name, "body": body, "floor": floor, "robot_radius_m": radius,
             "graph": graph(&shared.creature, &shared.plugs.attached()),
+            "hierarchies": hierarchies(&shared.creature),
         })
         .to_string()
     }
@@ -49,6 +50,17 @@ impl page::Source for View {
         self.0.events.note("halt", None, "reset from the page");
         Ok(())
     }
+}
+
+/// The hierarchies of releasing mechanisms among the creature's own modules: each drawn, with the names of its RMs
+/// in the order in which the wires `active` and `listening` count them.
+fn hierarchies(creature: &Creature) -> Vec<Value> {
+    let modules = creature.layers.iter().flat_map(|layer| &layer.modules);
+    let drawn = modules.filter_map(|module| {
+        let drawing = mechanisms::drawing(module.declaration.name)?;
+        Some(json!({"module": module.name, "svg": drawing.svg, "names": drawing.names}))
+    });
+    drawn.collect()
 }
 
 /// The wiring as the page shows it: the picture, made by the library that also draws files.

@@ -5,6 +5,7 @@ import { showEvents } from "./events.js";
 import { listen, showHalt } from "./halt.js";
 import { nameTitle, onView } from "./views.js";
 import { showLatency } from "./latency.js";
+import { setNest, showNest } from "./nest.js";
 import { forgetTimeline, redrawTimeline, showTimeline } from "./timeline.js";
 import { showWire } from "./wire.js";
 import { showWires } from "./wires.js";
@@ -47,6 +48,7 @@ function setPlan(fresh) {
   nameTitle(name);
   setWorld(fresh);
   setWiring(fresh.graph ?? {});
+  setNest(fresh);
 }
 
 /** Shows one part; a part that cannot make sense of what it got leaves the others alone. */
@@ -87,6 +89,7 @@ async function beat() {
     show(showHalt, state.halt);
     show(showHead, state);
     show(showWorld, state);
+    show(showNest, state);
     show(showWiring, state);
     show(showTimeline, state);
     show(showWire, state);

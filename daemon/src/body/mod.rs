@@ -12,6 +12,7 @@
 pub mod gate;
 pub mod handover;
 pub mod link;
+pub mod nest;
 pub mod office;
 pub mod process;
 pub mod remote;
@@ -84,7 +85,7 @@ impl World for Nowhere {
 }
 
 /// Every kind of body built in.
-pub const BODIES: &[&BodyKind] = &[&office::KIND, &warehouse::KIND];
+pub const BODIES: &[&BodyKind] = &[&office::KIND, &warehouse::KIND, &nest::KIND];
 
 /// The kind called `name`.
 pub fn find(name: &str) -> Option<&'static BodyKind> {

@@ -127,6 +127,12 @@ fn all_problems_are_found_at_once() {
             .count(),
         3
     );
+    let mixed = problems("rm a rports to top.\nadd stimulus nonsense to rm a with magnitude 1.");
+    assert_eq!(
+        mixed.lines().count(),
+        2,
+        "a name is wrong whatever else is: {mixed}"
+    );
 }
 
 #[test]

@@ -295,7 +295,7 @@ fn the_picture_shows_the_lit_tree() {
 
 #[test]
 fn the_programs_are_in_their_standard_form() {
-    for program in [adroit::nest::PROGRAM, ONE_THRESHOLD] {
+    for program in [adroit::nest::PROGRAM, ONE_THRESHOLD, adroit::drives::PROGRAM] {
         assert_eq!(adroit::language::format(program).as_deref(), Ok(program));
     }
 }

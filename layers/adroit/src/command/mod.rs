@@ -1,20 +1,20 @@
 //! The `adroit` commands, as a library so that another tool can offer them under its own name.
 
 mod figures;
-mod live;
 mod run;
+mod teach;
 
 use std::fs;
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use clap::{Args, Subcommand};
+use clap::{Args, Subcommand, ValueEnum};
 
 use crate::draw::svg;
 use crate::hierarchy::Hierarchy;
-use crate::language::{self, Problems, format};
-use crate::nest::{PROGRAM, vocabulary};
+use crate::language::{self, Problems, Vocabulary, format};
+use crate::{drives, live, nest};
 
 /// Arguments of `adroit`.
 #[derive(Args, Clone, Debug)]
@@ -26,7 +26,7 @@ pub struct AdroitArgs {
 #[derive(Subcommand, Clone, Debug)]
 enum What {
     /// Check a program and report everything that is wrong with it
-    Check(File),
+    Check(Program),
     /// Print a program in its standard form
     Format {
         #[command(flatten)]
@@ -36,7 +36,7 @@ enum What {
         write: bool,
     },
     /// Draw the hierarchy of a program as SVG
-    Graph(File),
+    Graph(Program),
     /// Run a program in a seeded world
     Run(run::RunArgs),
     /// Apply a command to a running hierarchy
@@ -52,6 +52,8 @@ enum What {
     Undo(live::Address),
     /// Print the program of a running hierarchy with all that was applied to it
     Save(live::Address),
+    /// Teach it a cue that means nothing yet, and watch it learn
+    Teach(teach::TeachArgs),
     /// Run many seeded worlds and print figures
     Figures(figures::FiguresArgs),
 }
@@ -59,15 +61,54 @@ enum What {
 /// The program to work on.
 #[derive(Args, Clone, Debug)]
 struct File {
-    /// A program; `-` reads from standard input, nothing takes the nest-building program
+    /// A program; `-` reads from standard input, nothing takes the one the robot comes with
     file: Option<PathBuf>,
+}
+
+/// A program, and the robot whose primitives it names.
+#[derive(Args, Clone, Debug)]
+struct Program {
+    #[command(flatten)]
+    file: File,
+    /// Whose stimuli, goal criteria, goal states and motor control units it may name
+    #[arg(long, value_enum, default_value = "nest")]
+    robot: Robot,
+}
+
+/// The robots that programs are written for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Robot {
+    /// The nest builder of the source.
+    Nest,
+    /// Allen, with a hierarchy as level 2.
+    Drives,
+}
+
+impl Robot {
+    fn vocabulary(self) -> Vocabulary {
+        match self {
+            Robot::Nest => nest::vocabulary(),
+            Robot::Drives => drives::vocabulary(),
+        }
+    }
+}
+
+impl Program {
+    fn load(&self) -> Result<Hierarchy, Trouble> {
+        let (text, name) = match (&self.file.file, self.robot) {
+            (None, Robot::Drives) => (drives::PROGRAM.to_owned(), "drives.adroit".to_owned()),
+            _ => self.file.read().map_err(|error| self.file.unreadable(&error))?,
+        };
+        language::load(&text, &self.robot.vocabulary())
+            .map_err(|problems| Trouble::Input(placed(&name, &problems)))
+    }
 }
 
 impl File {
     /// The text, and the name to put before its problems.
     fn read(&self) -> io::Result<(String, String)> {
         match &self.file {
-            None => Ok((PROGRAM.to_owned(), "nest.adroit".to_owned())),
+            None => Ok((nest::PROGRAM.to_owned(), "nest.adroit".to_owned())),
             Some(path) if path == Path::new("-") => {
                 let mut text = String::new();
                 io::stdin().read_to_string(&mut text)?;
@@ -75,11 +116,6 @@ impl File {
             }
             Some(path) => Ok((fs::read_to_string(path)?, path.display().to_string())),
         }
-    }
-
-    fn load(&self) -> Result<Hierarchy, Trouble> {
-        let (text, name) = self.read().map_err(|error| self.unreadable(&error))?;
-        language::load(&text, &vocabulary()).map_err(|problems| Trouble::Input(placed(&name, &problems)))
     }
 
     fn unreadable(&self, error: &io::Error) -> Trouble {
@@ -119,7 +155,7 @@ fn placed(name: &str, problems: &Problems) -> String {
 #[must_use]
 pub fn command(args: AdroitArgs) -> ExitCode {
     let result = match args.what {
-        What::Check(file) => file.load().map(|hierarchy| {
+        What::Check(program) => program.load().map(|hierarchy| {
             println!(
                 "{} RMs at {} levels; no problems",
                 hierarchy.mechanisms().len(),
@@ -127,14 +163,15 @@ pub fn command(args: AdroitArgs) -> ExitCode {
             );
         }),
         What::Format { file, write } => formatted(&file, write),
-        What::Graph(file) => file
+        What::Graph(program) => program
             .load()
-            .map(|hierarchy| print!("{}", svg(&hierarchy, &vocabulary()))),
+            .map(|hierarchy| print!("{}", svg(&hierarchy, &program.robot.vocabulary()))),
         What::Run(args) => run::run(&args),
         What::Apply { at, command } => at.ask(&live::Request::Apply(command)).map_err(Trouble::from),
         What::List(at) => at.ask(&live::Request::List).map_err(Trouble::from),
         What::Undo(at) => at.ask(&live::Request::Undo).map_err(Trouble::from),
         What::Save(at) => at.ask(&live::Request::Save).map_err(Trouble::from),
+        What::Teach(args) => teach::teach(&args).map_err(Trouble::from),
         What::Figures(args) => figures::figures(&args).map_err(Trouble::from),
     };
     match result {

@@ -6,11 +6,12 @@ use std::thread;
 use std::time::Duration;
 
 use clap::Args;
+use clap::builder::PossibleValuesParser;
 
-use super::live::Listener;
 use super::{File, Trouble, placed};
 use crate::draw::svg;
-use crate::nest::{BEAT_S, Layout, Run, generate, picture};
+use crate::live::Listener;
+use crate::nest::{BEAT_S, Layout, Run, Scene, picture};
 
 /// Beats between two pictures.
 const PICTURE_BEATS: u64 = 2;
@@ -19,6 +20,9 @@ const PICTURE_BEATS: u64 = 2;
 pub(super) struct RunArgs {
     #[command(flatten)]
     file: File,
+    /// The demonstration to watch
+    #[arg(long, default_value = "seeded", value_parser = PossibleValuesParser::new(Scene::NAMES))]
+    scene: String,
     /// Seed of the world
     #[arg(long, default_value_t = 1)]
     seed: u64,
@@ -44,8 +48,9 @@ pub(super) struct RunArgs {
 
 pub(super) fn run(args: &RunArgs) -> Result<(), Trouble> {
     let (text, name) = args.file.read().map_err(|error| args.file.unreadable(&error))?;
-    let mut world = generate(args.seed, Layout::default());
-    world.planning = !args.no_planning;
+    let scene = Scene::named(&args.scene).expect("the parser knows the scenes");
+    let mut world = scene.world(args.seed, Layout::default());
+    world.planning &= !args.no_planning;
     let mut run =
         Run::with_program(world, &text).map_err(|problems| Trouble::Input(placed(&name, &problems)))?;
     let listener = args.socket.as_deref().map(Listener::open).transpose()?;
@@ -54,7 +59,7 @@ pub(super) fn run(args: &RunArgs) -> Result<(), Trouble> {
     let (mut beats, mut path_before) = (0_u64, String::new());
     while run.world.now_s < limit_s && (args.seconds.is_some() || !run.world.nest_complete()) {
         if let Some(listener) = &listener {
-            listener.serve(&mut run.control);
+            listener.serve(&mut run.control, |_| {});
         }
         let evaluated = run.beat();
         let written = if args.json && beats.is_multiple_of(PICTURE_BEATS) {

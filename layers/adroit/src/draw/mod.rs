@@ -87,8 +87,8 @@ fn draw_rm(
     };
     let _ = writeln!(
         out,
-        "<rect class=\"rm{state}\" x=\"{:.0}\" y=\"{:.0}\" width=\"{:.0}\" height=\"{:.0}\" rx=\"4\"/>",
-        place.x, place.y, place.width, place.height
+        "<rect class=\"rm{state}\" data-rm=\"{}\" x=\"{:.0}\" y=\"{:.0}\" width=\"{:.0}\" height=\"{:.0}\" rx=\"4\"/>",
+        rm.0, place.x, place.y, place.width, place.height
     );
     let lines = lines(hierarchy, vocabulary, rm);
     for (count, text) in lines.iter().enumerate() {

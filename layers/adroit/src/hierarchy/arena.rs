@@ -179,11 +179,35 @@ impl Hierarchy {
     /// Takes over from a hierarchy that ran before what its RMs of the same names were doing, so that a
     /// command applied to a running hierarchy does not make it start anew.
     pub fn carry_over(&mut self, before: &Self) {
+        let places = self.places_in(before);
+        self.carry_over_at(before, &places);
+    }
+
+    /// For each RM its place in another hierarchy, if it has an RM of that name.
+    #[must_use]
+    pub fn places_in(&self, other: &Self) -> Box<[Option<MechanismIndex>]> {
+        self.names.iter().map(|name| other.find(name)).collect()
+    }
+
+    /// [`carry_over`](Self::carry_over) with the places that [`places_in`](Self::places_in) found: nothing is
+    /// searched nor allocated, so that a real-time thread may do it.
+    ///
+    /// # Panics
+    /// When the places are not those of this hierarchy in that one.
+    pub fn carry_over_at(&mut self, before: &Self, places: &[Option<MechanismIndex>]) {
+        assert_eq!(places.len(), self.traces.len(), "one place for each RM");
         self.number = before.number;
-        for (name, trace) in self.names.iter().zip(self.traces.iter_mut()) {
-            if let Some(place) = before.find(name) {
+        for (place, trace) in places.iter().zip(self.traces.iter_mut()) {
+            if let Some(place) = place {
                 *trace = before.traces[usize::from(place.0)];
             }
         }
+    }
+
+    /// Forgets every evaluation: the hierarchy is as it was loaded.
+    pub fn forget(&mut self) {
+        self.traces.fill(Trace::NEVER);
+        self.outputs_now = 0;
+        self.number = 0;
     }
 }

@@ -2,7 +2,7 @@
 
 use super::problem::{Problem, Problems};
 use super::program::{Declared, Program, Superordinate};
-use super::statement::Stated;
+use super::statement::{Stated, Statement};
 use super::vocabulary::{ALWAYS, Vocabulary};
 use crate::hierarchy::{DEPTH_MAX, INPUTS_MAX, MECHANISMS_MAX, WIDTH_MAX};
 
@@ -32,6 +32,19 @@ pub(crate) fn check(program: &Program, vocabulary: &Vocabulary) -> Result<(), Pr
     Problems::none_of(checker.problems)
 }
 
+/// Names in single sentences that the body does not have: what can be said of a program that cannot be read whole.
+pub(crate) fn unknown_primitives(statements: &[Statement], vocabulary: &Vocabulary) -> Vec<Problem> {
+    let mut checker = Checker {
+        program: &Program::default(),
+        vocabulary,
+        problems: Vec::new(),
+    };
+    for statement in statements {
+        checker.primitive(statement);
+    }
+    checker.problems
+}
+
 struct Checker<'a> {
     program: &'a Program,
     vocabulary: &'a Vocabulary,
@@ -49,6 +62,20 @@ impl<'a> Checker<'a> {
             self.problems
                 .push(Problem::new(name.at, message).near(&name.name, names));
         }
+    }
+
+    fn primitive(&mut self, statement: &Statement) {
+        let vocabulary = self.vocabulary;
+        let (name, what, names): (_, _, Vec<&str>) = match statement {
+            Statement::AddStimulus { stimulus, .. } => (stimulus, "stimulus", vocabulary.stimuli().collect()),
+            Statement::SelectsGoal { criterion, .. } | Statement::KeepsGoal { criterion, .. } => {
+                (criterion, "goal criterion", vocabulary.criteria().collect())
+            }
+            Statement::GoalState { state, .. } => (state, "goal state", vocabulary.states().collect()),
+            Statement::McuReports { mcu, .. } => (mcu, "mcu", vocabulary.mcus().collect()),
+            _ => return,
+        };
+        self.known(name, what, names.into_iter());
     }
 
     fn primitives(&mut self, rm: &Declared) {

@@ -37,10 +37,22 @@ use crate::hierarchy::Hierarchy;
 /// # Errors
 /// Every problem found in the text, in the order of their lines.
 pub fn check(text: &str, vocabulary: &Vocabulary) -> Result<Program, Problems> {
-    let statements = parser::parse(text)?;
-    let program = Program::assemble(&statements)?;
-    checker::check(&program, vocabulary)?;
-    Ok(program)
+    let (statements, mut problems) = parser::parse_what_can_be(text);
+    // With a sentence missing most of what could be found about the whole is not true; names are names still.
+    let assembled = if problems.is_empty() {
+        Program::assemble(&statements)
+    } else {
+        Err(Problems(Vec::new()))
+    };
+    match assembled {
+        Ok(program) => checker::check(&program, vocabulary).map(|()| program),
+        Err(Problems(more)) => {
+            problems.extend(more);
+            problems.extend(checker::unknown_primitives(&statements, vocabulary));
+            Problems::none_of(problems)?;
+            unreachable!("there was a problem")
+        }
+    }
 }
 
 /// Reads, checks and lays out a program.

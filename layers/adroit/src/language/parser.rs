@@ -12,6 +12,13 @@ const OPENINGS: [&str; 6] = ["add", "remove", "rm", "mcu", "goal", "threshold"];
 /// # Errors
 /// Every place where the text is not of the language.
 pub(crate) fn parse(text: &str) -> Result<Vec<Statement>, Problems> {
+    let (statements, problems) = parse_what_can_be(text);
+    Problems::none_of(problems)?;
+    Ok(statements)
+}
+
+/// Reads the statements that are of the language, and tells what is not.
+pub(crate) fn parse_what_can_be(text: &str) -> (Vec<Statement>, Vec<Problem>) {
     let (tokens, mut problems) = lexer::split(text);
     let tokens: Vec<Token> = tokens
         .into_iter()
@@ -31,8 +38,7 @@ pub(crate) fn parse(text: &str) -> Result<Vec<Statement>, Problems> {
             }
         }
     }
-    Problems::none_of(problems)?;
-    Ok(statements)
+    (statements, problems)
 }
 
 pub(crate) struct Parser<'a> {

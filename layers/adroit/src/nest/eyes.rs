@@ -29,6 +29,66 @@ pub(crate) struct Seen {
 }
 
 impl Seen {
+    /// Eyes with room for so many things of each sort.
+    pub(super) fn with_room(room: usize) -> Self {
+        Self {
+            objects: Vec::with_capacity(room),
+            before: Vec::with_capacity(room),
+            stations: Vec::with_capacity(room),
+            obstacles: Vec::with_capacity(room),
+            site: None,
+            nest: false,
+        }
+    }
+
+    /// Sees nothing.
+    pub(super) fn clear(&mut self) {
+        self.objects.clear();
+        self.before.clear();
+        self.stations.clear();
+        self.obstacles.clear();
+        self.site = None;
+        self.nest = false;
+    }
+
+    /// Sees other objects and stations, and forgets obstacles that left the view long ago.
+    pub(super) fn renew(
+        &mut self,
+        objects: impl Iterator<Item = (u32, Point)>,
+        stations: impl Iterator<Item = (u32, Point)>,
+        now_s: f64,
+    ) {
+        self.before.clear();
+        self.before.extend(self.objects.iter().map(|&(id, _)| id));
+        self.objects.clear();
+        self.objects.extend(objects);
+        self.stations.clear();
+        self.stations.extend(stations);
+        self.obstacles.retain(|&(_, until_s)| until_s > now_s);
+    }
+
+    /// Whether there is an object that was not there before.
+    pub(super) fn has_new(&self) -> bool {
+        self.objects.iter().any(|(id, _)| !self.before.contains(id))
+    }
+
+    /// Sees an obstacle; as many as there is room for.
+    pub(super) fn keep_standing(&mut self, disc: Disc, now_s: f64) {
+        self.keep_in_room(disc, now_s + AFTERIMAGE_S);
+    }
+
+    /// Sees a person.
+    pub(super) fn keep_walking(&mut self, disc: Disc, now_s: f64) {
+        self.keep_in_room(disc, now_s + MOVING_AFTERIMAGE_S);
+    }
+
+    fn keep_in_room(&mut self, disc: Disc, until_s: f64) {
+        let known = self.obstacles.iter().any(|(known, _)| known.id == disc.id);
+        if known || self.obstacles.len() < self.obstacles.capacity() {
+            self.keep(disc, until_s);
+        }
+    }
+
     fn keep(&mut self, disc: Disc, until_s: f64) {
         match self.obstacles.iter_mut().find(|(known, _)| known.id == disc.id) {
             Some(known) => *known = (disc, until_s),
@@ -39,7 +99,7 @@ impl Seen {
 
 impl World {
     /// Whether the eyes see a place; `hidden_by_others_than` names an obstacle that does not hide itself.
-    fn sees(&self, place: Point, hidden_by_others_than: Option<u32>) -> bool {
+    pub(super) fn sees(&self, place: Point, hidden_by_others_than: Option<u32>) -> bool {
         let robot = &self.robot;
         let distance_m = robot.place.distance_m(place);
         if distance_m <= TOUCH_M {
@@ -52,6 +112,14 @@ impl World {
                 Some(disc.id) == hidden_by_others_than
                     || distance_to_segment_m(disc.place, robot.place, place) > disc.radius_m
             })
+    }
+
+    /// Whether the eyes see the near side of an obstacle now.
+    pub(super) fn in_view(&self, disc: &Disc) -> bool {
+        let near = disc
+            .place
+            .towards(disc.place.direction_rad(self.robot.place), disc.radius_m);
+        self.sees(near, Some(disc.id))
     }
 
     /// Looks around; something new in view is a priority interrupt.
@@ -77,10 +145,7 @@ impl World {
         let now_s = self.now_s;
         seen.obstacles.retain(|&(_, until_s)| until_s > now_s);
         for disc in &self.obstacles {
-            let nearest = disc
-                .place
-                .towards(disc.place.direction_rad(self.robot.place), disc.radius_m);
-            if self.sees(nearest, Some(disc.id)) {
+            if self.in_view(disc) {
                 seen.keep(*disc, now_s + AFTERIMAGE_S);
                 self.robot.map.add(disc.id, disc.place, disc.radius_m);
             }
@@ -101,8 +166,7 @@ impl World {
             .find(|site| site.proper && self.sees(site.place, None))
             .map(|site| site.id);
         seen.nest = nest.is_some_and(|nest| self.sees(nest, None));
-        let new_object = seen.objects.iter().any(|(id, _)| !seen.before.contains(id));
-        self.interrupt |= new_object || seen.stations.len() > stations_before;
+        self.interrupt |= seen.has_new() || seen.stations.len() > stations_before;
         self.seen = seen;
     }
 }

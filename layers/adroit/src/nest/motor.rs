@@ -16,18 +16,20 @@ use super::world::{BEAT_S, World};
 use crate::hierarchy::{Goal, McuId};
 
 /// Turn of the steering wheel, radians a second.
-const STEERING_RAD_S: f64 = 3.0;
+pub(super) const STEERING_RAD_S: f64 = 3.0;
 /// Above this deviation the robot turns on the spot, radians.
 const ON_THE_SPOT_RAD: f64 = 0.15;
 /// The wheel is on course within this, radians.
-const ON_COURSE_RAD: f64 = 0.02;
+pub(super) const ON_COURSE_RAD: f64 = 0.02;
 /// Arm turning, radians a second, and growing, metres a second.
-const ARM_RAD_S: f64 = 2.0;
-const ARM_M_S: f64 = 0.6;
+pub(super) const ARM_RAD_S: f64 = 2.0;
+pub(super) const ARM_M_S: f64 = 0.6;
 /// Shortest time of an arm movement, seconds.
-const HOLD_S: f64 = 0.5;
+pub(super) const HOLD_S: f64 = 0.5;
 /// Closing and opening the hand, seconds.
-const HAND_S: f64 = 0.4;
+pub(super) const HAND_S: f64 = 0.4;
+/// With the wheel set wider than this the robot turns on the spot, radians.
+pub(super) const ON_THE_SPOT_STEERING_RAD: f64 = 1.5;
 /// The hand takes what is this near, metres.
 pub(crate) const HAND_M: f64 = 0.06;
 
@@ -88,7 +90,7 @@ pub(crate) fn on_course(robot: &Robot, to: Point) -> bool {
 }
 
 /// One step of a quantity towards another.
-fn approach(from: f64, to: f64, step: f64) -> f64 {
+pub(super) fn approach(from: f64, to: f64, step: f64) -> f64 {
     if (to - from).abs() <= step {
         to
     } else {
@@ -136,7 +138,7 @@ impl World {
         }
         let robot = &self.robot;
         let wheel_m = (SPEED_M_S * BEAT_S).copysign(working.goal.value);
-        let on_the_spot = robot.steering_rad.abs() > 1.5;
+        let on_the_spot = robot.steering_rad.abs() > ON_THE_SPOT_STEERING_RAD;
         let turn_rad = wheel_m * libm::sin(robot.steering_rad) / WHEELBASE_M;
         let off_rad = between_rad(robot.heading_rad, robot.place.direction_rad(to));
         let ends = if on_the_spot {

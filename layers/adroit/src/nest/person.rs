@@ -33,6 +33,20 @@ pub struct Person {
     pub carries: bool,
 }
 
+impl Person {
+    /// Someone who is only seen standing there.
+    pub(super) fn standing(id: u32, place: Point, radius_m: f64) -> Self {
+        Self {
+            id,
+            place,
+            radius_m,
+            to: place,
+            act_every_s: f64::INFINITY,
+            carries: false,
+        }
+    }
+}
+
 impl World {
     pub(crate) fn move_persons(&mut self) {
         for place in 0..self.persons.len() {

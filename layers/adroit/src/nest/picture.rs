@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::run::Run;
-use super::world::{Disc, FLOOR_X_M, FLOOR_Y_M, NEST_RADIUS_M, Object, Site, Station};
+use super::world::{Disc, FLOOR_X_M, FLOOR_Y_M, NEST_RADIUS_M, Object, Site, Station, World};
 use super::{EYES_RANGE_M, EYES_SIDE_RAD, Person, Point, Robot};
 use crate::hierarchy::{LevelIndex, Yielded};
 
@@ -24,9 +24,9 @@ pub struct Lamp {
     pub yielded: Option<&'static str>,
 }
 
-/// Everything a page needs to draw one moment.
+/// A place at one moment: everything but the hierarchy.
 #[derive(Clone, Debug, Serialize)]
-pub struct Picture<'a> {
+pub struct View<'a> {
     /// Time since the start, seconds.
     pub time_s: f64,
     /// Size of the floor, metres.
@@ -51,6 +51,36 @@ pub struct Picture<'a> {
     pub persons: &'a [Person],
     /// How many objects make a nest.
     pub wanted: usize,
+    /// How many lie at the site that the robot saw.
+    pub built: usize,
+}
+
+/// The view of a world, ready to be written as JSON.
+#[must_use]
+pub fn view(world: &World) -> View<'_> {
+    View {
+        time_s: world.now_s,
+        floor_m: (FLOOR_X_M, FLOOR_Y_M),
+        robot: &world.robot,
+        hand: world.robot.hand(),
+        eyes: (EYES_RANGE_M, EYES_SIDE_RAD),
+        objects: &world.objects,
+        obstacles: &world.obstacles,
+        stations: &world.stations,
+        sites: &world.sites,
+        nest_m: NEST_RADIUS_M,
+        persons: &world.persons,
+        wanted: world.wanted,
+        built: world.known_site().map_or(0, |site| world.lying_at(site.place)),
+    }
+}
+
+/// Everything a page needs to draw one moment.
+#[derive(Clone, Debug, Serialize)]
+pub struct Picture<'a> {
+    /// The world.
+    #[serde(flatten)]
+    pub view: View<'a>,
     /// The way planned ahead.
     pub plan: &'a [Point],
     /// MCUs at work.
@@ -86,18 +116,7 @@ pub fn picture(run: &Run) -> Picture<'_> {
     let world = &run.world;
     let vocabulary = run.control.vocabulary();
     Picture {
-        time_s: world.now_s,
-        floor_m: (FLOOR_X_M, FLOOR_Y_M),
-        robot: &world.robot,
-        hand: world.robot.hand(),
-        eyes: (EYES_RANGE_M, EYES_SIDE_RAD),
-        objects: &world.objects,
-        obstacles: &world.obstacles,
-        stations: &world.stations,
-        sites: &world.sites,
-        nest_m: NEST_RADIUS_M,
-        persons: &world.persons,
-        wanted: world.wanted,
+        view: view(world),
         plan: world.planner.way(),
         working: hierarchy
             .outputs()

@@ -12,7 +12,7 @@ use super::geometry::Point;
 use super::motor::Working;
 use super::world::World;
 use super::{BEAT_S, PROGRAM, vocabulary};
-use crate::hierarchy::{Goal, OUTPUTS_MAX, Output};
+use crate::hierarchy::{Goal, Hierarchy, OUTPUTS_MAX, Output};
 use crate::language::{Problems, Running};
 
 /// A goal that moved by less than this is the same goal to an MCU at work, metres.
@@ -89,8 +89,9 @@ impl Run {
             self.world.interrupt = false;
             self.ended = false;
             self.control.hierarchy_mut().evaluate(&self.world);
-            self.call_units();
-            self.note_search();
+            let hierarchy = self.control.hierarchy();
+            self.working = called(&self.working, hierarchy.outputs(), self.world.now_s);
+            self.world.note_search(hierarchy);
             self.world.plan();
         }
         let (control, ended) = (&mut self.control, &mut self.ended);
@@ -145,12 +146,13 @@ impl Run {
             complete: self.world.nest_complete(),
         }
     }
+}
 
+impl World {
     /// Tells the robot's search patterns which of them is being followed.
-    fn note_search(&mut self) {
-        let (place, now_s) = (self.world.robot.place, self.world.now_s);
-        let hierarchy = self.control.hierarchy();
-        let sweeps = &mut self.world.robot.sweeps;
+    pub(super) fn note_search(&mut self, hierarchy: &Hierarchy) {
+        let (place, now_s) = (self.robot.place, self.now_s);
+        let sweeps = &mut self.robot.sweeps;
         for sweep in [&mut sweeps.site, &mut sweeps.object, &mut sweeps.station] {
             let followed = hierarchy
                 .active_path()
@@ -163,23 +165,28 @@ impl Run {
             }
         }
     }
+}
 
-    /// Puts the chosen MCUs to work; one that works on the same goal already goes on.
-    fn call_units(&mut self) {
-        let before = std::mem::replace(&mut self.working, [None; OUTPUTS_MAX]);
-        for (slot, output) in self.working.iter_mut().zip(self.control.hierarchy().outputs()) {
-            let same = before.iter().flatten().find(|working| goes_on(working, output));
-            *slot = Some(same.map_or(
-                Working {
-                    mcu: output.mcu,
-                    goal: output.goal,
-                    since_s: self.world.now_s,
-                    driven_m: 0.0,
-                },
-                |working| *working,
-            ));
-        }
+/// The chosen MCUs at work; one that worked on the same goal already goes on.
+pub(super) fn called(
+    before: &[Option<Working>; OUTPUTS_MAX],
+    outputs: &[Output],
+    now_s: f64,
+) -> [Option<Working>; OUTPUTS_MAX] {
+    let mut working = [None; OUTPUTS_MAX];
+    for (slot, output) in working.iter_mut().zip(outputs) {
+        let same = before.iter().flatten().find(|working| goes_on(working, output));
+        *slot = Some(same.map_or(
+            Working {
+                mcu: output.mcu,
+                goal: output.goal,
+                since_s: now_s,
+                driven_m: 0.0,
+            },
+            |working| *working,
+        ));
     }
+    working
 }
 
 fn goes_on(working: &Working, output: &Output) -> bool {

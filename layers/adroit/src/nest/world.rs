@@ -8,6 +8,7 @@ use super::geometry::Point;
 use super::motor::Working;
 use super::person::Person;
 use super::robot::{FILLING_PER_S, IDLE_PER_S, PUMP_M, RADIUS_M, Robot};
+use super::scenes::Scene;
 use crate::hierarchy::McuId;
 use crate::planning::Planner;
 
@@ -101,6 +102,13 @@ pub struct World {
     pub(crate) burnt: f64,
     pub(crate) bumps: u32,
     pub(crate) stranded: bool,
+    /// The demonstration it is, and how much of what happens in it has happened.
+    pub(super) scene: Scene,
+    pub(super) happened: usize,
+    /// Way of the driven wheel, metres.
+    pub(super) rolled_m: f64,
+    /// How long the hand has been about to change, seconds.
+    pub(super) hand_s: f64,
     beats: u64,
 }
 
@@ -131,6 +139,10 @@ impl World {
             burnt: 0.0,
             bumps: 0,
             stranded: false,
+            scene: Scene::Seeded,
+            happened: 0,
+            rolled_m: 0.0,
+            hand_s: 0.0,
             beats: 0,
         }
     }
@@ -174,8 +186,7 @@ impl World {
     /// One beat: the working MCUs go on, then everything else moves, then the eyes look. Tells through
     /// `ended` which MCUs ended, and whether they did what they were called for.
     pub(crate) fn beat(&mut self, working: &mut [Option<Working>], mut ended: impl FnMut(McuId, bool)) {
-        self.beats += 1;
-        self.now_s = self.beats as f64 * BEAT_S;
+        self.begin_beat();
         for slot in working {
             if let Some(unit) = slot
                 && let Some(succeeded) = self.work(unit)
@@ -184,12 +195,23 @@ impl World {
                 *slot = None;
             }
         }
+        self.end_beat();
+    }
+
+    pub(super) fn begin_beat(&mut self) {
+        self.beats += 1;
+        self.now_s = self.beats as f64 * BEAT_S;
+    }
+
+    /// Everything but the robot's own movements.
+    pub(super) fn end_beat(&mut self) {
         if let Some(held) = self.robot.held {
             let hand = self.robot.hand();
             if let Some(object) = self.objects.iter_mut().find(|object| object.id == held) {
                 object.place = hand;
             }
         }
+        self.scene.happen(self);
         self.burn(IDLE_PER_S * BEAT_S);
         self.fill();
         self.move_persons();
@@ -218,7 +240,8 @@ impl World {
         }
     }
 
-    fn remember(&mut self) {
+    /// What the robot remembers of its rounds.
+    pub(super) fn remember_round(&mut self) {
         let (place, now_s) = (self.robot.place, self.now_s);
         let robot = &mut self.robot;
         for (sweep, rest_s) in [
@@ -230,6 +253,10 @@ impl World {
             sweep.pass(place, now_s);
         }
         robot.sweeps.object.found |= robot.held.is_some();
+    }
+
+    fn remember(&mut self) {
+        self.remember_round();
         if self.robot.site.is_none()
             && let Some(found) = self.seen.site
         {

@@ -35,11 +35,21 @@ pub struct Map {
 }
 
 impl Map {
+    /// Makes room for all obstacles that can be remembered.
+    pub(crate) fn make_room(&mut self) {
+        self.known.reserve(KNOWN_MAX);
+    }
+
     /// Adds an obstacle once.
     pub(crate) fn add(&mut self, id: u32, place: Point, radius_m: f64) {
         if self.known.len() < KNOWN_MAX && self.known.iter().all(|known| known.0 != id) {
             self.known.push((id, place, radius_m));
         }
+    }
+
+    /// Forgets all obstacles.
+    pub(crate) fn forget(&mut self) {
+        self.known.clear();
     }
 
     /// Obstacles known.
