@@ -3,9 +3,9 @@
 import { get, TokenWanted } from "./daemon.js";
 import { showEvents } from "./events.js";
 import { listen, showHalt } from "./halt.js";
+import { setHierarchies, showHierarchies } from "./hierarchy.js";
 import { nameTitle, onView } from "./views.js";
 import { showLatency } from "./latency.js";
-import { setNest, showNest } from "./nest.js";
 import { forgetTimeline, redrawTimeline, showTimeline } from "./timeline.js";
 import { showWire } from "./wire.js";
 import { showWires } from "./wires.js";
@@ -48,7 +48,7 @@ function setPlan(fresh) {
   nameTitle(name);
   setWorld(fresh);
   setWiring(fresh.graph ?? {});
-  setNest(fresh);
+  setHierarchies(fresh);
 }
 
 /** Shows one part; a part that cannot make sense of what it got leaves the others alone. */
@@ -89,7 +89,7 @@ async function beat() {
     show(showHalt, state.halt);
     show(showHead, state);
     show(showWorld, state);
-    show(showNest, state);
+    show(showHierarchies, state);
     show(showWiring, state);
     show(showTimeline, state);
     show(showWire, state);

@@ -2,7 +2,6 @@
 //
 //   #/  all parts      #/world  #/wiring  #/timeline  #/latency  #/wires  #/events  one part      #/wires/NAME  one wire
 
-const sections = [...document.querySelectorAll("main > section")];
 const links = [...document.querySelectorAll("#views a")];
 const unknown = document.getElementById("no-view");
 const listeners = [];
@@ -42,8 +41,10 @@ function entitle({ view, wire }) {
   document.title = view === "" || !shown ? `${creature} – subsumed` : `${shown} – ${creature}`;
 }
 
-function turn() {
+/** Shows what the address names. A panel that was put up since is shown or hidden with the others by its `data-view`. */
+export function turn() {
   const now = current();
+  const sections = [...document.querySelectorAll("main > section")];
   const known = now.view === "" || sections.some((section) => section.dataset.view === now.view);
   const view = known ? now.view : "";
   unknown.hidden = known;

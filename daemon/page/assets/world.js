@@ -2,11 +2,13 @@
 //
 // Knows no world: `worlds.js` says who draws which.
 
+import { say } from "./words.js";
 import { pictureFor } from "./worlds.js";
 
 const panel = document.getElementById("world-panel");
 const canvas = document.getElementById("world");
 const legend = document.getElementById("world-legend");
+const note = document.getElementById("world-note");
 const scheme = matchMedia("(prefers-color-scheme: dark)");
 let picture = null;
 let seen = false;
@@ -45,6 +47,7 @@ addEventListener("resize", redraw);
 export function showWorld(state) {
   if (picture === null) return;
   picture.see(state);
+  say(note, picture.note?.(state) ?? "");
   seen = true;
   redraw();
 }

@@ -6,13 +6,16 @@
 //   take(plan)   looks at what stays (plan.floor: what the body's `World::floor` gave), forgets what was before;
 //                returns width / height of the picture
 //   see(state)   looks at what moves (fields of the body's `World::view` stand beside time_s and halt); ten times a second
+//   note(state)  may be missing: a line of words beside the title, from the newest state
 //   draw({ pen, wide, high, dense, colour })   draws what was seen last on a cleared canvas of wide x high device
 //                pixels (dense of them to one of the page); colour(name) is a colour by its name; keeps no pen
 
 import * as floor from "./floor.js";
+import * as nest from "./nest.js";
 
 const PICTURES = {
   office: floor,
+  nest,
   warehouse: floor,
 };
 

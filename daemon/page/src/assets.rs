@@ -37,6 +37,7 @@ static ASSETS: &[Asset] = &[
     asset!("/worlds.js", SCRIPT, "worlds.js"),
     asset!("/floor.js", SCRIPT, "floor.js"),
     asset!("/wiring.js", SCRIPT, "wiring.js"),
+    asset!("/hierarchy.js", SCRIPT, "hierarchy.js"),
     asset!("/nest.js", SCRIPT, "nest.js"),
     asset!("/pulses.js", SCRIPT, "pulses.js"),
     asset!("/views.js", SCRIPT, "views.js"),

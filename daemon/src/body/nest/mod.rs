@@ -4,7 +4,7 @@
 
 mod declaration;
 
-use adroit::nest::{BEAT_S, Layout, Scene, Sensed, Setpoints, TOLD_MAX, Told, World as Floor, view as seen};
+use adroit::nest::{BEAT_S, FLOOR_X_M, FLOOR_Y_M, Layout, Scene, Sensed, Setpoints, TOLD_MAX, Told, World as Floor, view as seen};
 use ipc::clock::{Span, Time};
 use ipc::message::{Map, Payload, Polar, Pose};
 use ipc::wiring::Setting;
@@ -138,6 +138,10 @@ impl World for NestWorld {
             tell(link, now, &self.floor.sensed());
         }
         self.lived = Some(lived);
+    }
+
+    fn floor(&self) -> Value {
+        json!({ "size_m": [FLOOR_X_M, FLOOR_Y_M] })
     }
 
     fn view(&self) -> Value {
