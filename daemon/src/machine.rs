@@ -28,6 +28,7 @@ pub fn kinds() -> Kinds {
     Kinds::default()
         .with(stock::modules())
         .with(allen::MODULES.iter().copied())
+        .with([&truckin::wired::KIND])
         .with_bodies(bodies)
 }
 

@@ -39,6 +39,11 @@ impl page::Source for View {
         self.0.events.note("halt", None, "reset from the page");
         Ok(())
     }
+
+    fn pace(&self, word: &str) -> Result<(), String> {
+        let pace = self.0.pace.as_ref();
+        pace.ok_or("this world keeps its own pace")?.say(word)
+    }
 }
 
 /// The wiring as the page shows it: the picture, made by the library that also draws files.

@@ -5,6 +5,9 @@ use crate::answer::Answer;
 use crate::request::{Head, Unread};
 use crate::{assets, origin};
 
+/// Where the pace of a world is set; the word follows.
+const PACE: &str = "/api/pace/";
+
 /// The answer to a request.
 pub(crate) fn answer(head: &Head, source: &dyn Source) -> Answer {
     if let Some(why) = origin::refusal(head) {
@@ -19,6 +22,10 @@ pub(crate) fn answer(head: &Head, source: &dyn Source) -> Answer {
         }
         ("POST", "/api/reset") => match source.reset() {
             Ok(()) => Answer::json("{\"reset\":true}".to_owned()),
+            Err(why) => Answer::refusal("409 Conflict", &why),
+        },
+        ("POST", path) if path.starts_with(PACE) => match source.pace(&path[PACE.len()..]) {
+            Ok(()) => Answer::json("{\"pace\":true}".to_owned()),
             Err(why) => Answer::refusal("409 Conflict", &why),
         },
         (_, "/api/plan" | "/api/state") => method("use GET"),
