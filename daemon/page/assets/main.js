@@ -4,6 +4,7 @@ import { get } from "./daemon.js";
 import { showEvents } from "./events.js";
 import { listen, showHalt } from "./halt.js";
 import { showLatency } from "./latency.js";
+import { setOotland, showOotland } from "./ootland.js";
 import { showWires } from "./wires.js";
 import { showWiring, setWiring } from "./wiring.js";
 import { setWorld, showWorld } from "./world.js";
@@ -42,6 +43,7 @@ function setPlan(fresh) {
   say(document.getElementById("creature"), name);
   document.title = `${name} – subsumed`;
   setWorld(fresh);
+  setOotland(fresh);
   setWiring(fresh.graph ?? {});
 }
 
@@ -81,6 +83,7 @@ async function beat() {
     show(showHalt, state.halt);
     show(showHead, state);
     show(showWorld, state);
+    show(showOotland, state);
     show(showWiring, state);
     show(showWires, state.wires);
     show(showLatency, state.layers);

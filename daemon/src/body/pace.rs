@@ -90,6 +90,10 @@ mod tests {
         pace.say("normal").expect("a word");
         pace.say("pause").expect("a word");
         assert!(!next(0), "what was owed is forgotten with another pace");
-        assert!(pace.say("quick").expect_err("no word").contains("slow, fast, pause or step"));
+        assert!(
+            pace.say("quick")
+                .expect_err("no word")
+                .contains("slow, fast, pause or step")
+        );
     }
 }

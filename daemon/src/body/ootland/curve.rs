@@ -39,7 +39,11 @@ impl Curve {
         }
         if self.slots.len() > POINTS_MAX {
             self.every *= 2;
-            let kept: Vec<bool> = self.slots.iter().map(|slot| slot.is_multiple_of(self.every)).collect();
+            let kept: Vec<bool> = self
+                .slots
+                .iter()
+                .map(|slot| slot.is_multiple_of(self.every))
+                .collect();
             thin(&mut self.slots, &kept);
             self.cents.iter_mut().for_each(|line| thin(line, &kept));
         }
@@ -75,7 +79,11 @@ mod tests {
         }
         assert_eq!((curve.slots[0], curve.slots.last()), (0, Some(&1_001)));
         assert!(curve.slots.len() > POINTS_MAX / 3, "{}", curve.slots.len());
-        let last: Vec<i64> = curve.cents.iter().filter_map(|line| line.last().copied()).collect();
+        let last: Vec<i64> = curve
+            .cents
+            .iter()
+            .filter_map(|line| line.last().copied())
+            .collect();
         let books: Vec<i64> = game.books().iter().map(|book| book.capital_cents()).collect();
         assert_eq!(last, books);
     }

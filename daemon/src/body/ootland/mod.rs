@@ -182,7 +182,11 @@ impl World for OotlandWorld {
         if let Some(order) = Order::of(&Map::unpack(&words)) {
             self.obey(order);
         }
-        if self.seat.is_open() && self.opened.is_some_and(|opened| now.since(opened) >= self.patience) {
+        if self.seat.is_open()
+            && self
+                .opened
+                .is_some_and(|opened| now.since(opened) >= self.patience)
+        {
             self.close();
         }
         self.open(now);
@@ -203,7 +207,9 @@ impl World for OotlandWorld {
     fn floor(&self) -> Value {
         let slots = SLOTS.iter().map(|slot| {
             let alleles = slot.alleles.iter();
-            let alleles: Vec<Value> = alleles.map(|a| json!({"name": a.name, "idea": a.idea()})).collect();
+            let alleles: Vec<Value> = alleles
+                .map(|a| json!({"name": a.name, "idea": a.idea()}))
+                .collect();
             json!({"name": slot.name, "alleles": alleles})
         });
         let slots: Vec<Value> = slots.collect();
