@@ -4,8 +4,8 @@ use std::cell::RefCell;
 use std::rc::Rc;
 
 use backplane::{
-    ACTIONS_MAX, Action, BehaviourLayer, CommunicationBackplane, Creature, Executor, Feedback, LayerId, Phase,
-    Proposal, SELECTIONS_MAX, Selector, SteppedTurn, TurnEnd, take_turn,
+    ACTIONS_MAX, Action, BehaviourLayer, CommunicationBackplane, Creature, Executor, Feedback, LayerId,
+    Phase, Proposal, SELECTIONS_MAX, Selector, SteppedTurn, TurnEnd, take_turn,
 };
 
 /// A snail that can crawl some inches in a turn.
@@ -313,7 +313,10 @@ fn a_turn_in_steps_is_the_same_turn() {
 fn each_phase_is_a_step_of_its_own() {
     let (mut layers, journal) = stack([(&[4, 4], &[]), (&[], &[]), (&[], &[])]);
     let mut backplane = CommunicationBackplane::new(3);
-    let body = Shell { crawled: 0, minutes: 5 };
+    let body = Shell {
+        crawled: 0,
+        minutes: 5,
+    };
     let mut turn = SteppedTurn::default();
     turn.begin::<Snail>(&body);
     let calls = |journal: &Journal| journal.borrow().len();
@@ -331,8 +334,14 @@ fn each_phase_is_a_step_of_its_own() {
     }
     turn.answered(&mut backplane, 4, &body);
     assert_eq!(turn.wanted(&backplane), Some(Crawl(4)), "the plan goes on");
-    let later = Shell { crawled: 8, minutes: -3 };
+    let later = Shell {
+        crawled: 8,
+        minutes: -3,
+    };
     turn.answered(&mut backplane, 8, &later);
     assert_eq!(turn.phase(), Phase::Over(TurnEnd::SlotUsedUp));
-    assert_eq!(backplane.selected().map(|selected| selected.outcomes.to_vec()), Some(vec![4, 8]));
+    assert_eq!(
+        backplane.selected().map(|selected| selected.outcomes.to_vec()),
+        Some(vec![4, 8])
+    );
 }

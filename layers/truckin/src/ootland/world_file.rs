@@ -282,7 +282,8 @@ impl Reader<'_> {
             .find(|kind| value.as_str() == Some(kind.name()));
         if kind.is_none() {
             let found = &self.text[value.span.start..value.span.end];
-            let what = format!("expected one of none, producer, retailer, consumer, gas_station, found {found}");
+            let what =
+                format!("expected one of none, producer, retailer, consumer, gas_station, found {found}");
             self.fault(value.span, what);
         }
         kind
