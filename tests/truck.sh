@@ -18,11 +18,11 @@ fail() { echo "FAILED: $*"; tail -n 20 "$work"/*.log; exit 1; }
 ctl() { "$bin/subsumectl" --creature truck "$@"; }
 
 # Bad input: a micro-strategy that is not there is told with its place and the nearest that is.
-sed 's/gas = "cheapest_in_reach"/gas = "cheapest_in_reech"/' "$root/layers/truckin/truck.toml" >"$work/bad.toml"
+sed 's/"enough_for_the_game"/"enough_for_the_gane"/' "$root/layers/truckin/truck.toml" >"$work/bad.toml"
 status=0; "$bin/subsumed" --creature "$work/bad.toml" 2>"$work/bad.log" || status=$?
 [ $status -eq 2 ] || fail "an unknown micro-strategy must end with status 2"
 grep -q 'bad.toml:[0-9]*:[0-9]*' "$work/bad.log" || fail "an unknown micro-strategy must be told with its place"
-grep -q 'cheapest_in_reach' "$work/bad.log" || fail "the nearest micro-strategy must be named"
+grep -q 'enough_for_the_game' "$work/bad.log" || fail "the nearest micro-strategy must be named"
 
 "$bin/subsumed" --creature "$root/layers/truckin/truck.toml" --page-port 0 --flight-recorder off >"$work/daemon.log" 2>&1 &
 daemon=$!
@@ -56,7 +56,7 @@ if command -v chromium >/dev/null; then
     || fail "chromium failed"
   grep -q 'data-connected="true"' "$work/dom.html" || fail "the page does not reach the daemon"
   for sign in 'id="ootland-panel"' 'class="dealer" data-kind="retailer"' 'data-truck="4"' 'class="capital"' \
-    'data-state="holds"' 'data-pace="slow"' 'this creature' 'gas getting' 'keep prices fresh'; do
+    'data-state="holds"' 'data-pace="slow"' 'this creature' 'gas getting' 'call the neighbours'; do
     grep -q "$sign" "$work/dom.html" || fail "the page does not show $sign"
   done
   grep -q 'Refused to apply' "$work/chromium.log" && fail "the page's own policy refuses a part of it"

@@ -96,7 +96,7 @@ export function showOotland(state) {
   panel.section.dataset.pace = game.pace;
   const trucks = listed(game.trucks).map((truck) => (truck.wired ? { ...truck, ...wired(listed(state.wires), game) } : truck));
   drawMap(panel.map, game, trucks);
-  showTrucks(trucks);
+  showTrucks(trucks, game);
   showDealers(listed(game.dealers));
   drawCurve(panel.curve, game);
 }
@@ -104,7 +104,7 @@ export function showOotland(state) {
 /** What the wires say about the truck whose layers are in a layer of the creature. */
 function wired(wires, game) {
   const carried = (port) => {
-    const wire = wires.find(({ wire }) => wire !== "body.gas" && wire?.endsWith(`.${port}`));
+    const wire = wires.find(({ wire }) => wire?.endsWith(`.${port}`));
     return wire === undefined ? null : numbers(wire.value);
   };
   const genes = carried("genes")?.[0];
@@ -134,13 +134,17 @@ function action(word, game) {
   const verb = Math.floor(word / VERB);
   const operand = word - verb * VERB;
   if (verb === 1) return `${DIRECTIONS[Math.floor(operand / 1000)]} ${operand % 1000}`;
-  if (verb === 4) return `phone ${operand % game.avenues},${Math.floor(operand / game.avenues)}`;
+  if (verb === 4) return phone(operand, game);
   return `${verb === 2 ? "buy" : "sell"} ${operand}`;
 }
 
 /** The actions of a plan in words; corners by avenue and street. */
-function words(plan) {
-  return listed(plan).join(", ");
+function words(plan, game) {
+  return listed(plan).map((step) => step.replace(/^phone (\d+)$/, (_, corner) => phone(Number(corner), game))).join(", ");
+}
+
+function phone(corner, game) {
+  return `phone ${corner % game.avenues},${Math.floor(corner / game.avenues)}`;
 }
 
 function card(seat) {
@@ -164,7 +168,7 @@ function card(seat) {
 
 let cards = [];
 
-function showTrucks(trucks) {
+function showTrucks(trucks, game) {
   if (cards.length !== trucks.length) {
     cards = trucks.map((_, seat) => card(seat));
     panel.trucks.replaceChildren(...cards.map(({ box }) => box));
@@ -187,7 +191,7 @@ function showTrucks(trucks) {
       line.line.dataset.state = holds ? "holds" : layer.inhibited ? "inhibited" : "quiet";
       say(line.name, layer.slot);
       say(line.strategy, layer.strategy.replaceAll("_", " "));
-      say(line.plan, `${layer.inhibited ? "inhibited " : ""}${holds ? "▶ " : ""}${words(layer.plan)}`);
+      say(line.plan, `${layer.inhibited ? "inhibited " : ""}${holds ? "▶ " : ""}${words(layer.plan, game)}`);
     }
   }
 }
