@@ -4,7 +4,8 @@
 # metrics are scraped over HTTP.
 #
 #   tests/mcap.sh [FOLDER-OF-BINARIES]      default: target/release
-# Needs Python with venv and pip for the package; says so and goes on without when they are not there.
+# An export for ROS 2 is read by the PyPI package `rosbags`.
+# Needs Python with venv and pip for the packages; says so and goes on without when they are not there.
 set -euo pipefail
 bin=$(realpath "${1:-target/release}")
 here=$(realpath "$(dirname "$0")")
@@ -24,6 +25,11 @@ python=""
 if [ -n "${MCAP_PYTHON:-}" ]; then python=$MCAP_PYTHON
 elif python3 -m venv "$work/venv" 2>"$work/pip.log" && "$work/venv/bin/pip" -q install mcap 2>>"$work/pip.log"; then python="$work/venv/bin/python"
 else echo "skipped: reading recordings with the PyPI package mcap (no venv, pip or network)"; fi
+if [ -n "$python" ] && [ -z "${MCAP_PYTHON:-}" ] && ! "$work/venv/bin/pip" -q install rosbags 2>>"$work/pip.log"; then
+  echo "skipped: reading exports with the PyPI package rosbags (pip refused it)"
+fi
+rosbags=""
+[ -n "$python" ] && "$python" -c 'import rosbags' 2>/dev/null && rosbags=$python
 reads() { [ -z "$python" ] || "$python" "$here/mcap_check.py" "$@" || fail "the package mcap does not agree with $1"; }
 
 # Allen with a layer that comes and goes, from the first beat on.
@@ -55,7 +61,7 @@ sleep 3
 kill -9 "$wander"; wait "$wander" 2>/dev/null || true; wander=""
 ctl halt >/dev/null
 wait $ring || fail "a ring ends with the halt: $(cat "$work/ring.log")"
-for _ in $(seq 50); do ls "$work"/flight/recs-*-emergency-stop.mcap >/dev/null 2>&1 && break; sleep 0.1; done
+for _ in $(seq 300); do ls "$work"/flight/recs-*-emergency-stop.mcap >/dev/null 2>&1 && break; sleep 0.1; done
 ls "$work"/flight/recs-*-emergency-stop.mcap >/dev/null || fail "the flight recorder must keep a halt"
 kill -TERM $daemon; wait $daemon || fail "SIGTERM must end with status 0"; daemon=""
 [ "$(ls "$work/flight" | wc -l)" = 1 ] || fail "a shutdown is no reason to keep a file: $(ls "$work/flight")"
@@ -66,6 +72,9 @@ grep -q '^no difference' "$work/replay.txt" || fail "$(cat "$work/replay.txt")"
 grep -q '^note' "$work/replay.txt" && fail "a recording from the first beat has nothing to be noted: $(cat "$work/replay.txt")"
 "$bin/subsumectl" why collide.halt --from "$work"/flight/*.mcap --at -1 >/dev/null || fail "why, from a flight recording"
 "$bin/subsumectl" why turn.rate --from "$work/all.mcap" --at 1e6 2>"$work/bad.log" && fail "a time outside the recording must be refused"
+"$bin/subsumectl" export "$work/all.mcap" -o "$work/ros2.mcap" || fail "an export for ROS 2"
+"$bin/subsumectl" export "$work/all.mcap" -o "$work/ros2.mcap" 2>"$work/bad.log" && fail "an export must not write over a file"
+[ -z "$rosbags" ] || "$rosbags" "$here/ros2_check.py" "$work/all.mcap" "$work/ros2.mcap" || fail "the package rosbags does not agree"
 head -c 200000 "$work/all.mcap" >"$work/cut.mcap"
 "$bin/subsumectl" replay "$work/cut.mcap" >"$work/cut.txt" || fail "what is left of a recording replays: $(cat "$work/cut.txt")"
 grep -q 'cut off' "$work/cut.txt" || fail "a recording that was cut off must be called that"

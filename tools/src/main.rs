@@ -4,6 +4,7 @@ mod check;
 mod compete;
 mod doctor;
 mod example;
+mod export;
 mod live;
 mod manual;
 mod modules;
@@ -125,6 +126,21 @@ enum Command {
     Replay {
         /// The recording
         file: PathBuf,
+    },
+    /// Writes a recording as other tools want it
+    #[command(after_help = "Examples:\n  \
+        subsumectl export run.mcap -o run-ros2.mcap    for ros2 bag, RViz, PlotJuggler, rosbags\n\n\
+        Foxglove and the mcap packages open a recording as it is.\n\
+        Status: 0 written; 2 not a recording, or the new file is there already.")]
+    Export {
+        /// The recording
+        file: PathBuf,
+        /// The file to write; one that is there is left alone
+        #[arg(short, long, value_name = "FILE")]
+        output: PathBuf,
+        /// For whom
+        #[arg(long, value_enum, default_value = "ros2")]
+        profile: export::Profile,
     },
     /// Emergency stop; holds until reset
     Halt,
@@ -297,6 +313,11 @@ fn main() -> ExitCode {
         Command::Replay { file } => {
             return replay::replay(&file, options.creature.as_deref().map(Path::new), json);
         }
+        Command::Export {
+            file,
+            output,
+            profile,
+        } => return export::export(&file, &output, profile, json),
         Command::Events => live::events(creature, json),
         Command::Halt => live::order(
             creature,

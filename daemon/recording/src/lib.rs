@@ -5,6 +5,7 @@
 //! - [`ring`]: the last minute of it, bounded, for when something goes wrong
 //! - [`writer`], [`schema`]: items into MCAP, as JSON with JSON Schemas
 //! - [`reader`]: MCAP back into messages and beats
+//! - [`ros2`]: a recording as ROS 2 tools want it
 //! - [`why`]: the chain behind a message
 //!
 //! Must never run on a real-time thread, and never lose anything without counting it.
@@ -16,6 +17,7 @@ pub mod item;
 pub mod manifest;
 pub mod reader;
 pub mod ring;
+pub mod ros2;
 pub mod schema;
 mod text;
 pub mod why;

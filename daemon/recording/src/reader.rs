@@ -187,6 +187,11 @@ impl MessageText {
     }
 }
 
+/// A message of a wire from its text.
+pub(crate) fn message(text: &[u8], kind: Kind) -> serde_json::Result<Message> {
+    Ok(serde_json::from_slice::<MessageText>(text)?.message(kind))
+}
+
 /// Reads the recording at `path`.
 ///
 /// # Errors
@@ -232,7 +237,7 @@ pub fn parse(bytes: &[u8]) -> Result<Recording, String> {
 }
 
 /// The manifest, the losses, and whether the file has an end.
-fn records(bytes: &[u8]) -> Result<(Manifest, BTreeMap<String, u64>, bool), String> {
+pub(crate) fn records(bytes: &[u8]) -> Result<(Manifest, BTreeMap<String, u64>, bool), String> {
     let (mut manifest, mut file, mut losses, mut whole) = (None, String::new(), BTreeMap::new(), false);
     let reader = mcap::read::LinearReader::new_with_options(bytes, Options::IgnoreEndMagic.into())
         .map_err(|_| "is no MCAP file; expected one that `subsumectl record` wrote".to_string())?;
@@ -278,12 +283,10 @@ impl Recording {
                 .get("plug")
                 .and_then(|p| p.parse().ok())
                 .unwrap_or(0);
-            let text: MessageText = serde_json::from_slice(&message.data).map_err(wrong)?;
-            let message = text.message(kind_of(&message.channel));
+            let message = self::message(&message.data, kind_of(&message.channel)).map_err(wrong)?;
             self.wires.entry((plug, name.into())).or_default().push(message);
         } else if let Some(name) = topic.strip_prefix("/commands/") {
-            let text: MessageText = serde_json::from_slice(&message.data).map_err(wrong)?;
-            let message = text.message(kind_of(&message.channel));
+            let message = self::message(&message.data, kind_of(&message.channel)).map_err(wrong)?;
             self.commands.entry(name.into()).or_default().push(message);
         } else if let Some(name) = topic.strip_prefix("/beats/") {
             let beat: Beat = serde_json::from_slice(&message.data).map_err(wrong)?;
@@ -405,7 +408,7 @@ impl Recording {
 }
 
 /// The kind of message on a channel: the end of its schema's name.
-fn kind_of(channel: &mcap::Channel<'_>) -> Kind {
+pub(crate) fn kind_of(channel: &mcap::Channel<'_>) -> Kind {
     let name = channel.schema.as_ref().map_or("", |s| s.name.as_str());
     let kind = ipc::message::KINDS
         .into_iter()

@@ -20,6 +20,7 @@ use crate::text::{BeatNote, message_text};
 impl<W: Write> Writer<W> {
     pub(super) fn beat(&mut self, source: usize, words: &[u64]) -> McapResult<()> {
         let beat = trace::decode(words);
+        self.newest = self.newest.max(beat.commit);
         let mut note = BeatNote::default();
         for entry in beat.entries {
             match entry {

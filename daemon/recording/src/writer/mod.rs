@@ -14,7 +14,7 @@ use std::collections::{BTreeMap, HashMap};
 use std::io::Write;
 use std::sync::Arc;
 
-use ipc::clock::Time;
+use ipc::clock::{Span, Time};
 use ipc::message::Kind;
 use mcap::records::{MessageHeader, Metadata};
 use mcap::write::NoSeek;
@@ -45,8 +45,13 @@ pub struct Writer<W: Write> {
     taps: HashMap<u16, Tap>,
     rest: HashMap<&'static str, u16>,
     causes: Option<u64>,
+    /// The newest beat of the daemon's own.
+    newest: Time,
     text: Vec<u8>,
 }
+
+/// How far a layer process's message may lie beyond the newest beat that was written.
+const FOREIGN_LEAD_MAX: Span = Span::secs(10);
 
 impl<W: Write> Writer<W> {
     /// Begins a recording of the creature that `manifest` describes.
@@ -69,6 +74,7 @@ impl<W: Write> Writer<W> {
             taps: manifest.taps.iter().map(|t| (t.number, t.clone())).collect(),
             rest: HashMap::new(),
             causes: None,
+            newest: Time::ZERO,
             text: Vec::new(),
         };
         writer.describe()?;
@@ -239,7 +245,15 @@ impl<W: Write> Writer<W> {
             return Ok(());
         }
         let (id, kind) = (wire.id, wire.kind);
-        self.message(id, kind, number, stamp, words)
+        message_text(&mut self.text, kind, number, stamp, words);
+        self.send(id, number, self.believable(stamp))
+    }
+
+    /// When a message of a layer process is logged: at its stamp, if that can be. The process may write any stamp; one
+    /// from before the daemon, or from the future, would stretch the recording's time line over centuries.
+    fn believable(&self, stamp: Time) -> Time {
+        let began = Time(self.manifest.began_ns);
+        stamp.clamp(began, self.newest.max(began) + FOREIGN_LEAD_MAX)
     }
 
     fn plugged(&mut self, time: Time, plugged: &Plugged) -> McapResult<()> {
