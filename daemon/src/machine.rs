@@ -29,6 +29,7 @@ pub fn kinds() -> Kinds {
         .with(stock::modules())
         .with(allen::MODULES.iter().copied())
         .with(mechanisms::MODULES.iter().copied())
+        .with([&truckin::wired::KIND])
         .with_bodies(bodies)
 }
 

@@ -18,6 +18,7 @@ use ipc::wiring::directory::{Directory, output_ports};
 use recording::Manifest;
 use serde_json::{Value, json};
 
+use crate::body::pace::Pace;
 use crate::body::remote::{self, Remote};
 use crate::body::{self, World, WorldEnd};
 use crate::events::Events;
@@ -47,6 +48,8 @@ pub struct Shared {
     pub plugs: Plugs,
     /// Shared memory.
     pub domain: Domain,
+    /// Where the pace of the world is set, if it takes one.
+    pub pace: Option<Arc<Pace>>,
     /// What of the world does not change; known once the body is there.
     floor: Mutex<Value>,
     /// What happens, for those who record it.
@@ -153,6 +156,7 @@ pub fn start(
         events,
         plugs,
         domain,
+        pace: embodied.as_ref().and_then(|b| b.world.pace()),
         floor: Mutex::new(floor),
         recorder: Recorder::new(manifest, settings.flight.is_some()),
         timeline: Mutex::default(),

@@ -50,6 +50,11 @@ impl page::Source for View {
         self.0.events.note("halt", None, "reset from the page");
         Ok(())
     }
+
+    fn pace(&self, word: &str) -> Result<(), String> {
+        let pace = self.0.pace.as_ref();
+        pace.ok_or("this world keeps its own pace")?.say(word)
+    }
 }
 
 /// The hierarchies of releasing mechanisms among the creature's own modules: each drawn, with the names of its RMs

@@ -8,6 +8,7 @@ import { nameTitle, onView } from "./views.js";
 import { showLatency } from "./latency.js";
 import { forgetTimeline, redrawTimeline, showTimeline } from "./timeline.js";
 import { showWire } from "./wire.js";
+import { setOotland, showOotland } from "./ootland.js";
 import { showWires } from "./wires.js";
 import { showWiring, setWiring } from "./wiring.js";
 import { redraw, setWorld, showWorld } from "./world.js";
@@ -47,6 +48,7 @@ function setPlan(fresh) {
   say(document.getElementById("creature"), name);
   nameTitle(name);
   setWorld(fresh);
+  setOotland(fresh);
   setWiring(fresh.graph ?? {});
   setHierarchies(fresh);
 }
@@ -90,6 +92,7 @@ async function beat() {
     show(showHead, state);
     show(showWorld, state);
     show(showHierarchies, state);
+    show(showOotland, state);
     show(showWiring, state);
     show(showTimeline, state);
     show(showWire, state);

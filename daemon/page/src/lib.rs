@@ -55,4 +55,12 @@ pub trait Source: Send + Sync {
     /// # Errors
     /// Says in words for an operator why the creature stays halted.
     fn reset(&self) -> Result<(), String>;
+
+    /// Sets the pace of a world that goes by turns: `slow`, `normal`, `fast`, `pause`, or `step` for one turn.
+    ///
+    /// # Errors
+    /// Says in words for an operator why the world goes on as it did.
+    fn pace(&self, _word: &str) -> Result<(), String> {
+        Err("this world keeps its own pace".to_owned())
+    }
 }

@@ -8,6 +8,9 @@ use crate::origin::{self, Verdict};
 use crate::request::{Head, Unread};
 use crate::{Token, assets};
 
+/// Where the pace of a world is set; the word follows.
+const PACE: &str = "/api/pace/";
+
 /// The answer to a request.
 pub(crate) fn answer(head: &Head, from: IpAddr, token: Option<&Token>, source: &dyn Source) -> Answer {
     match origin::verdict(head, from, token) {
@@ -32,6 +35,10 @@ pub(crate) fn answer(head: &Head, from: IpAddr, token: Option<&Token>, source: &
         }
         ("POST", "/api/reset") => match source.reset() {
             Ok(()) => Answer::json("{\"reset\":true}".to_owned()),
+            Err(why) => Answer::refusal("409 Conflict", &why),
+        },
+        ("POST", path) if path.starts_with(PACE) => match source.pace(&path[PACE.len()..]) {
+            Ok(()) => Answer::json("{\"pace\":true}".to_owned()),
             Err(why) => Answer::refusal("409 Conflict", &why),
         },
         (_, "/api/plan" | "/api/state" | "/api/timeline") => method("use GET"),

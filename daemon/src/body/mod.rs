@@ -14,12 +14,15 @@ pub mod handover;
 pub mod link;
 pub mod nest;
 pub mod office;
+pub mod ootland;
+pub mod pace;
 pub mod process;
 pub mod remote;
 mod rover;
 pub mod warehouse;
 
 use std::any::Any;
+use std::sync::Arc;
 
 use ipc::clock::{Span, Time};
 use ipc::wiring::{Declaration, Setting};
@@ -63,6 +66,11 @@ pub trait World: Send + Any {
         serde_json::Value::Null
     }
 
+    /// Where its pace is set, if it goes by turns and takes one from the operator.
+    fn pace(&self) -> Option<Arc<pace::Pace>> {
+        None
+    }
+
     /// What does not change: see the page's `plan`.
     fn floor(&self) -> serde_json::Value {
         serde_json::Value::Null
@@ -85,7 +93,7 @@ impl World for Nowhere {
 }
 
 /// Every kind of body built in.
-pub const BODIES: &[&BodyKind] = &[&office::KIND, &warehouse::KIND, &nest::KIND];
+pub const BODIES: &[&BodyKind] = &[&office::KIND, &warehouse::KIND, &nest::KIND, &ootland::KIND];
 
 /// The kind called `name`.
 pub fn find(name: &str) -> Option<&'static BodyKind> {

@@ -12,14 +12,26 @@ impl Executor {
     /// and the layers find out in their next feedback phase. Returns how many actions were tried.
     pub fn execute<C: Creature>(backplane: &mut CommunicationBackplane<C>, body: &mut C::Body<'_>) -> usize {
         let mut tried = 0;
-        while let Some(&action) = backplane
-            .selected()
-            .and_then(|selected| selected.plan.actions().get(tried))
-        {
+        while let Some(action) = Self::next(backplane) {
             let outcome = action.do_action(body);
-            backplane.book_outcome(outcome);
+            Self::book(backplane, outcome);
             tried += 1;
         }
         tried
+    }
+
+    /// The action of the selected plan that comes next: the first without an outcome.
+    pub fn next<C: Creature>(backplane: &CommunicationBackplane<C>) -> Option<C::Action> {
+        let selected = backplane.selected()?;
+        selected.plan.actions().get(selected.outcomes.len()).copied()
+    }
+
+    /// Books what came of [`Executor::next`], for a body that answers later than it is asked.
+    ///
+    /// # Panics
+    /// When no action was under way.
+    pub fn book<C: Creature>(backplane: &mut CommunicationBackplane<C>, outcome: C::Outcome) {
+        assert!(Self::next(backplane).is_some(), "an outcome of no action");
+        backplane.book_outcome(outcome);
     }
 }

@@ -36,6 +36,7 @@ mod executor;
 mod layer;
 mod plan;
 mod selector;
+mod stepped;
 mod turn;
 
 pub use communication::{CommunicationBackplane, LAYERS_MAX, Selected};
@@ -45,4 +46,5 @@ pub use executor::Executor;
 pub use layer::{BehaviourLayer, Feedback, LayerId, Proposal};
 pub use plan::{ACTIONS_MAX, PlanIsFull, PlanOfAction};
 pub use selector::Selector;
+pub use stepped::{Phase, SteppedTurn};
 pub use turn::{SELECTIONS_MAX, TurnEnd, take_turn};

@@ -5,7 +5,7 @@ use std::rc::Rc;
 
 use backplane::{
     ACTIONS_MAX, Action, BehaviourLayer, CommunicationBackplane, Creature, Executor, Feedback, LayerId,
-    Proposal, SELECTIONS_MAX, Selector, TurnEnd, take_turn,
+    Phase, Proposal, SELECTIONS_MAX, Selector, SteppedTurn, TurnEnd, take_turn,
 };
 
 /// A snail that can crawl some inches in a turn.
@@ -251,5 +251,97 @@ fn nobody_inhibits_upwards() {
         &mut layers,
         &mut CommunicationBackplane::new(2),
         &Shell::default(),
+    );
+}
+
+/// Takes a turn step by step, as over wires: each action is done between two steps. How it ended, and how many
+/// steps it took.
+fn take_turn_in_steps(
+    layers: &mut [Scripted],
+    backplane: &mut CommunicationBackplane<Snail>,
+    body: &mut Shell,
+) -> (TurnEnd, u32) {
+    let mut turn = SteppedTurn::default();
+    assert_eq!((turn.phase(), turn.wanted(backplane)), (Phase::Idle, None));
+    turn.begin::<Snail>(body);
+    for steps in 0.. {
+        if let Phase::Over(end) = turn.phase() {
+            return (end, steps);
+        }
+        turn.step(layers, backplane, body);
+        while let Some(action) = turn.wanted(backplane) {
+            let outcome = action.do_action(body);
+            turn.answered(backplane, outcome, body);
+        }
+    }
+    unreachable!("a turn ends")
+}
+
+#[test]
+fn a_turn_in_steps_is_the_same_turn() {
+    let stacks: [[(&[i32], &[u8]); 3]; 5] = [
+        [(&[2, 3], &[]), (&[1], &[]), (&[], &[])],
+        [(&[2, 3], &[]), (&[0, 4], &[0]), (&[], &[])],
+        [(&[1], &[]), (&[1], &[]), (&[], &[0, 1])],
+        [(&[0], &[]), (&[], &[]), (&[], &[])],
+        [(&[], &[]), (&[], &[]), (&[], &[])],
+    ];
+    for plans in stacks {
+        for minutes in [0, 1, 10] {
+            let play = |stepped: bool| {
+                let (mut layers, journal) = stack(plans);
+                let mut backplane = CommunicationBackplane::new(3);
+                let mut body = Shell { crawled: 0, minutes };
+                let mut ends = Vec::new();
+                for _ in 0..3 {
+                    body.minutes = minutes;
+                    ends.push(match stepped {
+                        true => take_turn_in_steps(&mut layers, &mut backplane, &mut body).0,
+                        false => take_turn(&mut layers, &mut backplane, &mut body),
+                    });
+                }
+                let outcomes = backplane.selected().map(|selected| selected.outcomes.to_vec());
+                let journal = journal.borrow().clone();
+                (ends, body.crawled, outcomes, journal)
+            };
+            assert_eq!(play(true), play(false), "{plans:?} {minutes}");
+        }
+    }
+}
+
+#[test]
+fn each_phase_is_a_step_of_its_own() {
+    let (mut layers, journal) = stack([(&[4, 4], &[]), (&[], &[]), (&[], &[])]);
+    let mut backplane = CommunicationBackplane::new(3);
+    let body = Shell {
+        crawled: 0,
+        minutes: 5,
+    };
+    let mut turn = SteppedTurn::default();
+    turn.begin::<Snail>(&body);
+    let calls = |journal: &Journal| journal.borrow().len();
+    for (phase, called) in [
+        (Phase::Hear, 0),
+        (Phase::Clear, 3),
+        (Phase::Propose, 3),
+        (Phase::Select, 6),
+        (Phase::Act, 6),
+        (Phase::Act, 6),
+    ] {
+        assert_eq!((turn.phase(), calls(&journal)), (phase, called));
+        assert_eq!(turn.wanted(&backplane).is_some(), phase == Phase::Act);
+        turn.step(&mut layers, &mut backplane, &body);
+    }
+    turn.answered(&mut backplane, 4, &body);
+    assert_eq!(turn.wanted(&backplane), Some(Crawl(4)), "the plan goes on");
+    let later = Shell {
+        crawled: 8,
+        minutes: -3,
+    };
+    turn.answered(&mut backplane, 8, &later);
+    assert_eq!(turn.phase(), Phase::Over(TurnEnd::SlotUsedUp));
+    assert_eq!(
+        backplane.selected().map(|selected| selected.outcomes.to_vec()),
+        Some(vec![4, 8])
     );
 }

@@ -9,3 +9,4 @@ pub mod grid;
 pub mod ootland;
 pub mod report;
 pub mod strategies;
+pub mod wired;

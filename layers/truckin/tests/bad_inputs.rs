@@ -37,7 +37,7 @@ fn every_fault_of_a_world_comes_with_line_and_column() {
         ("streetz = 3", "1:1: a world has no \"streetz\""),
         (
             "[[dealer]]\nat = [1, 2]\nkind = \"bank\"",
-            "3:9: expected one of none, producer",
+            "3:9: expected one of none, producer, retailer, consumer, gas_station, found ",
         ),
         (
             "[[dealer]]\nat = [10, 2]\nkind = \"retailer\"",
@@ -95,9 +95,13 @@ fn world_check_says_where_and_exits_with_2() {
 
 #[test]
 fn a_wrong_chromosome_is_told_with_its_digit() {
-    let done = truckin(&["game", "0312", "0372"]);
+    let done = truckin(&["game", "0312", "0372", "03x2", "031"]);
     assert_eq!(done.status.code(), Some(2));
     let said = String::from_utf8_lossy(&done.stderr).into_owned();
+    assert!(
+        said.contains("\"03x2\", digit 3") && said.contains("\"031\": expected 4 digits, found 3"),
+        "all of them at once: {said}"
+    );
     assert!(
         said.contains("\"0372\", digit 3: expected 0 to 4 for trading, found '7'"),
         "{said}"

@@ -4,7 +4,10 @@
 
 mod declaration;
 
-use adroit::nest::{BEAT_S, FLOOR_X_M, FLOOR_Y_M, Layout, Scene, Sensed, Setpoints, TOLD_MAX, Told, World as Floor, view as seen};
+use adroit::nest::{
+    BEAT_S, FLOOR_X_M, FLOOR_Y_M, Layout, Scene, Sensed, Setpoints, TOLD_MAX, Told, World as Floor,
+    view as seen,
+};
 use ipc::clock::{Span, Time};
 use ipc::message::{Map, Payload, Polar, Pose};
 use ipc::wiring::Setting;

@@ -8,7 +8,7 @@ use super::inputs::{self, Trouble, say};
 use crate::ootland::rules::{SLOTS_MAX, TRUCKS_MAX};
 use crate::ootland::view::TruckView;
 use crate::ootland::{Game, GameView};
-use crate::strategies::Chromosome;
+use crate::strategies::{Chromosome, ChromosomeFault};
 
 /// Plays one game and shows it slot by slot.
 #[derive(Debug, Args)]
@@ -51,10 +51,7 @@ pub(super) fn run(args: &GameArgs) -> Result<(), Trouble> {
             args.trucks.len()
         )));
     }
-    let trucks = args.trucks.iter().map(|text| text.parse::<Chromosome>());
-    let trucks = trucks
-        .collect::<Result<Vec<_>, _>>()
-        .map_err(|fault| Trouble::BadInput(fault.to_string()))?;
+    let trucks = chromosomes(&args.trucks)?;
     let mut game = Game::new(&world, &trucks, args.slots, args.seed, args.game);
     while !game.is_over() {
         game.play_slot();
@@ -66,6 +63,22 @@ pub(super) fn run(args: &GameArgs) -> Result<(), Trouble> {
         }
     }
     Ok(())
+}
+
+/// Reads every chromosome; what is wrong with any of them is told in one go.
+fn chromosomes(texts: &[String]) -> Result<Vec<Chromosome>, Trouble> {
+    let (mut trucks, mut faults) = (Vec::new(), Vec::new());
+    for text in texts {
+        match text.parse() {
+            Ok(truck) => trucks.push(truck),
+            Err(fault) => faults.push(ChromosomeFault::to_string(&fault)),
+        }
+    }
+    if faults.is_empty() {
+        return Ok(trucks);
+    }
+    let advice = "`truckin strategies` tells what each digit stands for";
+    Err(Trouble::BadInput(format!("{}\n{advice}", faults.join("\n"))))
 }
 
 fn show(view: &GameView, json: bool) -> Result<(), Trouble> {

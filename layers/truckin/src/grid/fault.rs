@@ -53,7 +53,12 @@ impl GridFault {
 impl fmt::Display for GridFault {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Bad { path, line, what } => write!(out, "{}:{line}: {what}", path.display()),
+            Self::Bad { path, line, what } => write!(
+                out,
+                "{}:{line}: {what}\nnothing was written; name another file with --out, or put back what this one \
+                 held",
+                path.display()
+            ),
             Self::Io { path, doing, error } => write!(out, "{}: {doing}: {error}", path.display()),
             Self::Rules { what } => write!(out, "the rules were broken: {what}"),
         }

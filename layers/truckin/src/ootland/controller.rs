@@ -43,6 +43,16 @@ impl TruckBook {
         }
     }
 
+    /// The truck's money in cents.
+    pub fn capital_cents(&self) -> i64 {
+        self.capital_cents
+    }
+
+    /// Minutes left in the slot; negative when actions have run over.
+    pub fn left_minutes(&self) -> i32 {
+        self.left_minutes
+    }
+
     /// A new slot: ten minutes more, less what the last actions overran; unused minutes are lost.
     #[inline]
     pub(crate) fn begin_slot(&mut self) {

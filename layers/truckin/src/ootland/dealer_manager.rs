@@ -54,6 +54,27 @@ impl Manager {
         }
     }
 
+    /// The books of a dealer who advertises this and has nothing.
+    pub(crate) fn of_card(card: Card) -> Self {
+        Self::new(Opening {
+            card,
+            capital_cents: 0,
+            crates: 0,
+            items: 0,
+            crate_storage: 0,
+            item_storage: 0,
+        })
+    }
+
+    /// The books of a dealer who trades nothing.
+    pub(crate) fn idle() -> Self {
+        Self::of_card(Card {
+            kind: Kind::Idle,
+            buying_cents: 0,
+            selling_cents: 0,
+        })
+    }
+
     /// What the dealer advertises now.
     #[inline]
     pub fn card(&self) -> Card {

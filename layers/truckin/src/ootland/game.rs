@@ -16,10 +16,10 @@ use crate::strategies::Chromosome;
 
 /// A game in progress.
 pub struct Game {
-    land: Land,
-    trucks: Vec<Truck>,
-    books: Vec<TruckBook>,
-    referee: Referee,
+    pub(super) land: Land,
+    pub(super) trucks: Vec<Truck>,
+    pub(super) books: Vec<TruckBook>,
+    pub(super) referee: Referee,
     opening: Holdings,
 }
 

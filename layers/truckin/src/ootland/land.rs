@@ -1,8 +1,8 @@
 //! The map: which dealer stands at which corner. Only controllers and the referee hold it.
 
 use super::chance::Chance;
-use super::dealer_manager::Manager;
-use super::dealers::{Dealer, Kind};
+use super::dealer_manager::{Card, Manager};
+use super::dealers::{Dealer, Idle, Kind};
 use super::grid::{Corner, Grid};
 use super::ledger::{Holdings, Ledger};
 
@@ -45,6 +45,25 @@ impl Land {
             playing,
             ledger: Ledger::default(),
         }
+    }
+
+    /// A country in which nobody trades anything.
+    pub(crate) fn empty(grid: Grid) -> Self {
+        let idle = Stand {
+            manager: Manager::idle(),
+            dealer: Dealer::Idle(Idle),
+        };
+        Self::new(grid, vec![idle; grid.corners()])
+    }
+
+    /// Has the dealer at a corner show this card and nothing behind it.
+    pub(crate) fn advertise(&mut self, corner: Corner, card: Card) {
+        self.stands[usize::from(corner.0)].manager = Manager::of_card(card);
+    }
+
+    /// Has nobody trade at a corner any more.
+    pub(crate) fn close(&mut self, corner: Corner) {
+        self.stands[usize::from(corner.0)].manager = Manager::idle();
     }
 
     /// The size of the country.

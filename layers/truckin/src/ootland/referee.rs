@@ -52,11 +52,10 @@ impl Referee {
         books: &mut [TruckBook],
         watch: &mut impl FnMut(Turn),
     ) {
-        land.play_dealers(&mut self.chance);
+        self.open_slot(land);
         watch(Turn::Dealers);
-        self.chance.shuffle(&mut self.order);
-        for &seat in &self.order {
-            let seat = usize::from(seat);
+        for at in 0..self.order.len() {
+            let seat = self.seat(at);
             let book = &mut books[seat];
             book.begin_slot();
             if book.left_minutes > 0 {
@@ -64,6 +63,22 @@ impl Referee {
             }
             watch(Turn::Truck(seat));
         }
+        self.close_slot();
+    }
+
+    /// Begins a slot: the dealers play, the order of the trucks is drawn.
+    pub(super) fn open_slot(&mut self, land: &mut Land) {
+        land.play_dealers(&mut self.chance);
+        self.chance.shuffle(&mut self.order);
+    }
+
+    /// Whose turn comes as the `at`-th in this slot.
+    pub(super) fn seat(&self, at: usize) -> usize {
+        usize::from(self.order[at])
+    }
+
+    /// Ends a slot: time moves on.
+    pub(super) fn close_slot(&mut self) {
         self.clock.slot += 1;
     }
 }

@@ -281,10 +281,10 @@ impl Reader<'_> {
             .into_iter()
             .find(|kind| value.as_str() == Some(kind.name()));
         if kind.is_none() {
-            self.fault(
-                value.span,
-                "expected one of none, producer, retailer, consumer, gas_station",
-            );
+            let found = &self.text[value.span.start..value.span.end];
+            let what =
+                format!("expected one of none, producer, retailer, consumer, gas_station, found {found}");
+            self.fault(value.span, what);
         }
         kind
     }
