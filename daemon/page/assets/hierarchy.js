@@ -6,7 +6,6 @@ import { turn } from "./views.js";
 import { listed } from "./words.js";
 
 const NS = "http://www.w3.org/2000/svg";
-const main = document.querySelector("main");
 let trees = [];
 
 function make(tag, attributes, ...children) {
@@ -25,8 +24,7 @@ function panel(id, title, note, ...children) {
 export function setHierarchies(plan) {
   for (const tree of trees) tree.panel.remove();
   trees = listed(plan.hierarchies).map(planted).filter((tree) => tree !== null);
-  const behind = document.getElementById("wiring-panel");
-  for (const tree of trees) main.insertBefore(tree.panel, behind);
+  document.getElementById("wiring-panel").after(...trees.map((tree) => tree.panel));
   turn();
 }
 
