@@ -81,7 +81,7 @@ pub struct Outcome {
 const INTERVALS: u32 = 20;
 
 /// How many times the asked-for rounds are added at most where a limit is not kept.
-const ROUNDS_MORE: usize = 2;
+pub const ROUNDS_MORE: usize = 2;
 
 /// Seconds that a round takes beyond its length: both sides begin at a full second.
 const ROUND_EXTRA: Duration = Duration::from_millis(2500);

@@ -30,11 +30,13 @@ pub enum Scene {
     TwoObstacles,
     /// A wall of them.
     MoreObstacles,
+    /// Cold and thirst pull equally: the robot does neither, but waves its arm, until fuel tips the scales.
+    Tie,
 }
 
 impl Scene {
     /// All scenes.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 11] = [
         Self::Seeded,
         Self::SingleSweep,
         Self::NoSite,
@@ -45,10 +47,11 @@ impl Scene {
         Self::OneObstacle,
         Self::TwoObstacles,
         Self::MoreObstacles,
+        Self::Tie,
     ];
 
     /// Their names, in the same order.
-    pub const NAMES: [&'static str; 10] = [
+    pub const NAMES: [&'static str; 11] = [
         "seeded",
         "single-sweep",
         "no-site",
@@ -59,6 +62,7 @@ impl Scene {
         "one-obstacle",
         "two-obstacles",
         "more-obstacles",
+        "tie",
     ];
 
     /// The scene of a name.
@@ -76,7 +80,7 @@ impl Scene {
             Self::Seeded => return generate(seed, layout),
             Self::SingleSweep => return generate(3, alone),
             Self::NoSite => return generate(3, Layout { site: false, ..alone }),
-            Self::PutInFront | Self::WithinReach | Self::Brought | Self::Refuelling => {
+            Self::PutInFront | Self::WithinReach | Self::Brought | Self::Refuelling | Self::Tie => {
                 let mut world = World::new(Robot::new(Point::new(8.0, 6.0), 0.0), seed);
                 world.put_site(Point::new(7.3, 6.0), true);
                 world
@@ -111,6 +115,13 @@ impl Scene {
                 world.put_station(Point::new(10.0, 8.5));
                 spread(world, 11.0);
                 world.robot.fuel = 0.75;
+            }
+            Self::Tie => {
+                // Behind the robot, where its eyes do not see it.
+                world.put_station(Point::new(2.0, 6.0));
+                spread(world, 11.0);
+                // Four times what is missing, less a half, is exactly the one that the cold gives nest building.
+                world.robot.fuel = 0.625;
             }
             Self::OneObstacle | Self::TwoObstacles | Self::MoreObstacles => {
                 world.put_object(Point::new(9.8, 6.0));
