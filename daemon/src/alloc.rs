@@ -2,7 +2,7 @@
 //!
 //! After the start a real-time thread allocates nothing; should one do so all the same, it is counted and
 //! shown in every status, rather than found by a late beat.
-#![allow(unsafe_code)] // a global allocator is unsafe by its trait, mallopt by being C; all is passed on unchanged
+#![allow(unsafe_code)] // a global allocator is unsafe by its trait; everything is passed on unchanged
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
@@ -31,19 +31,6 @@ pub fn unseal() {
 pub fn broken() -> u64 {
     // Relaxed: a number to look at.
     BROKEN.load(Ordering::Relaxed)
-}
-
-/// Has all threads share one arena of the system's allocator. Call it before there are others.
-///
-/// glibc would give every few threads one of their own, up to eight for each processor. The daemon's callers are threads
-/// that come and go: each arena would grow to the most that its threads ever held at once, all of it locked in memory.
-/// Those threads wait for their callers, not for each other; real-time threads allocate nothing.
-pub fn share_one_arena() {
-    #[cfg(target_env = "gnu")]
-    // SAFETY: sets a number in the allocator; no other thread runs yet.
-    unsafe {
-        libc::mallopt(libc::M_ARENA_MAX, 1);
-    }
 }
 
 /// The system's allocator, counting.
