@@ -1,5 +1,6 @@
 // The capital of every truck over the game.
 
+import { paint, picture, shape } from "./ootland_shape.js";
 import { listed } from "./words.js";
 
 const WIDE = 640;
@@ -7,21 +8,7 @@ const HIGH = 170;
 const LEFT = 62;
 const BOTTOM = 20;
 const TOP = 8;
-const SPACE = "http://www.w3.org/2000/svg";
 let drawn = "";
-
-function shape(tag, properties, parent, text) {
-  const made = document.createElementNS(SPACE, tag);
-  for (const [name, value] of Object.entries(properties)) made.setAttribute(name, value);
-  if (text !== undefined) made.textContent = text;
-  parent.append(made);
-  return made;
-}
-
-/** Gives a shape the colour of a truck; the page's policy allows no style in attributes. */
-function paint(made, seat) {
-  made.style.setProperty("--truck", `var(--truck-${seat % 8})`);
-}
 
 /** Round numbers from below `low` to above `high`, about five of them. */
 function ticks(low, high) {
@@ -47,10 +34,7 @@ export function drawCurve(box, game) {
   const end = Math.max(10, slots[slots.length - 1]);
   const x = (slot) => LEFT + (slot / end) * (WIDE - LEFT - 10);
   const y = (dollars) => TOP + ((high - dollars) / (high - low || 1)) * (HIGH - TOP - BOTTOM);
-  const plot = document.createElementNS(SPACE, "svg");
-  plot.setAttribute("viewBox", `0 0 ${WIDE} ${HIGH}`);
-  plot.setAttribute("role", "img");
-  plot.setAttribute("aria-label", "Capital of every truck over the game, in dollars, by slot");
+  const plot = picture(WIDE, HIGH, "Capital of every truck over the game, in dollars, by slot");
   for (const dollars of scale) {
     shape("line", { x1: LEFT, x2: WIDE - 10, y1: y(dollars), y2: y(dollars), class: "grid" }, plot);
     shape("text", { x: LEFT - 6, y: y(dollars) + 3.5, class: "tick end" }, plot, `$${dollars.toLocaleString("en")}`);

@@ -1,32 +1,15 @@
 // The map of OOTland: roads, dealers with price and stock, trucks on their way.
 
-import { listed } from "./words.js";
+import { paint, picture, shape } from "./ootland_shape.js";
+import { listed, say } from "./words.js";
 
 const STEP = 72;
 const EDGE = 44;
 const LETTERS = { producer: "P", retailer: "R", consumer: "C", gas_station: "G" };
-const SPACE = "http://www.w3.org/2000/svg";
 let size = "";
 let dealers = new Map();
 let trucks = [];
 let places = null;
-
-function shape(tag, properties, parent, text) {
-  const made = document.createElementNS(SPACE, tag);
-  for (const [name, value] of Object.entries(properties)) made.setAttribute(name, value);
-  if (text !== undefined) made.textContent = text;
-  parent.append(made);
-  return made;
-}
-
-/** Gives a shape the colour of a truck; the page's policy allows no style in attributes. */
-function paint(made, seat) {
-  made.style.setProperty("--truck", `var(--truck-${seat % 8})`);
-}
-
-function say(node, text) {
-  if (node.textContent !== text) node.textContent = text;
-}
 
 /** Streets are counted from the south, as on a map. */
 function place(game, avenue, street) {
@@ -36,10 +19,7 @@ function place(game, avenue, street) {
 function build(box, game) {
   const wide = 2 * EDGE + (game.avenues - 1) * STEP;
   const high = 2 * EDGE + (game.streets - 1) * STEP;
-  const map = document.createElementNS(SPACE, "svg");
-  map.setAttribute("viewBox", `0 0 ${wide} ${high}`);
-  map.setAttribute("role", "img");
-  map.setAttribute("aria-label", "Map of OOTland with dealers and trucks; the tables say the same in words");
+  const map = picture(wide, high, "Map of OOTland with dealers and trucks; the tables say the same in words");
   const roads = shape("g", { class: "roads" }, map);
   for (let avenue = 0; avenue < game.avenues; avenue += 1) {
     const [x] = place(game, avenue, 0);

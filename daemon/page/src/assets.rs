@@ -39,6 +39,7 @@ static ASSETS: &[Asset] = &[
     asset!("/ootland.css", "text/css; charset=utf-8", "ootland.css"),
     asset!("/ootland.js", SCRIPT, "ootland.js"),
     asset!("/ootland_curve.js", SCRIPT, "ootland_curve.js"),
+    asset!("/ootland_shape.js", SCRIPT, "ootland_shape.js"),
     asset!("/ootland_map.js", SCRIPT, "ootland_map.js"),
     asset!("/wiring.js", SCRIPT, "wiring.js"),
     asset!("/hierarchy.js", SCRIPT, "hierarchy.js"),

@@ -156,7 +156,10 @@ fn every_published_behaviour_is_shown_over_wires() {
     });
     assert!(refuelled && end.world.robot.fuel > 0.0);
     let tied = watched(Scene::Tie, 5.0, |wired| wired.active("maintenance"));
-    assert!(!tied.active("nest-building") && !tied.active("seek-station"), "both yield");
+    assert!(
+        !tied.active("nest-building") && !tied.active("seek-station"),
+        "both yield"
+    );
     watched(Scene::Tie, 900.0, |wired| wired.world.robot.filling);
     for (scene, rm) in [
         (Scene::OneObstacle, "single-obstacle"),
