@@ -82,11 +82,24 @@ daemon=""
 
 echo "== the nest builder"
 creature=nest
-"$bin/subsumed" --creature layers/mechanisms/nest.toml --page-port 0 --flight-recorder off >"$work/nest.log" 2>&1 &
+"$bin/subsumed" --commands "$work/none" --headless 2>"$work/none.log" && fail "Allen has no hierarchy to command"
+grep -q -- '--commands: expected one module of kind mechanisms' "$work/none.log" || fail "that must be told"
+"$bin/subsumed" --creature layers/mechanisms/nest.toml --commands "$work/commands" --page-port 0 --flight-recorder off >"$work/nest.log" 2>&1 &
 daemon=$!
 until_shown "it drives" 'nest.wheel .* 0\.[1-9]' ctl wires
 until_shown "it carries an object" '#[0-9]+ +[1-9]' ctl watch body.held --count 1
 [ "$(ctl status --json | tr ',{' '\n\n' | sed -n 's/.*"real_time_allocations": *//p' | head -1)" = 0 ] || fail "allocations on real-time threads"
+adroit apply 'rm idle reports to top. add stimulus always to rm idle with magnitude 9. threshold of rm idle is 0.' >"$work/told" 2>&1 \
+  && fail "an RM without anything to control is an error: $(cat "$work/told")"
+adroit apply 'rm wait reports to top. add stimulus always to rm wait with magnitude 50. mcu arm reports to rm wait.' \
+  || fail "the hierarchy in the daemon takes commands"
+adroit list | grep -q 'rm wait reports to top' || fail "the list must show it"
+until_shown "commanded to wait, it stands" '#[0-9]+ +0(\.0+)?( |$)' ctl watch nest.wheel --count 1
+curl -s "http://127.0.0.1:$(sed -n 's#.*http://127.0.0.1:\([0-9]*\)/#\1#p' "$work/nest.log")/api/plan" | grep -q '"wait"' \
+  || fail "the page must draw the hierarchy that runs"
+adroit undo || fail "and takes them back"
+until_shown "and drives on" 'nest.wheel .* 0\.[1-9]' ctl wires
+[ "$(stat -c %a "$work/commands")" = 600 ] || fail "commands are the owner's alone"
 port=$(sed -n 's#.*http://127.0.0.1:\([0-9]*\)/#\1#p' "$work/nest.log")
 if command -v chromium >/dev/null; then
   timeout 90 chromium --headless --no-sandbox --disable-gpu --disable-quic --no-first-run --disable-background-networking \
@@ -103,4 +116,5 @@ else
 fi
 kill $daemon; wait $daemon || fail "the daemon must end with status 0"
 daemon=""
+[ ! -e "$work/commands" ] || fail "the socket must be gone"
 echo "all is well"

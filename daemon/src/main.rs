@@ -23,6 +23,7 @@ use ipc::wire::iceoryx::Domain;
 use ipc::wiring::creature::Creature;
 use ipc::wiring::directory::output_ports;
 use ipc::wiring::{Source, check};
+use mechanisms::desk::{self, Served};
 use page::Token;
 
 #[global_allocator]
@@ -108,6 +109,7 @@ fn run(options: &Options, creature: Creature, file: String) -> Result<(), String
     let owned = domain.own(&name, cells).map_err(|e| e.to_string())?;
     let admission = Admission::of(&creature.outsiders)?;
     let fed = Fed::open(creature.halt.watchdog_device.as_deref()).map_err(|e| e.to_string())?;
+    let _commands = take_commands(options, &creature)?;
     let machine = match options.body {
         Some(_) => Machine::apart(creature, &kinds(), owned.page().clone()),
         None => Machine::new(creature, &kinds(), owned.page().clone(), None),
@@ -166,6 +168,16 @@ fn token(file: &Path) -> Result<Token, String> {
             Token::BYTES_MAX
         )
     })
+}
+
+/// Opens the desk at which the creature's hierarchy is told commands, before its module is built.
+fn take_commands(options: &Options, creature: &Creature) -> Result<Option<Served>, String> {
+    let Some(socket) = &options.commands else {
+        return Ok(None);
+    };
+    let modules = creature.layers.iter().flat_map(|layer| &layer.modules);
+    let served = desk::open_for(modules.map(|module| module.declaration.name), socket);
+    served.map(Some).map_err(|e| format!("--commands: {e}"))
 }
 
 fn serve_metrics(options: &Options, running: &Running) -> Result<Vec<Metrics>, String> {

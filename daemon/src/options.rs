@@ -63,6 +63,10 @@ pub struct Options {
     /// Record everything from the first beat on into an MCAP file
     #[arg(long, value_name = "FILE")]
     pub record: Option<PathBuf>,
+    /// Take commands to the creature's hierarchy of releasing mechanisms at a Unix socket:
+    /// `subsumectl adroit apply|list|undo|save --socket PATH`
+    #[arg(long, value_name = "PATH")]
+    pub commands: Option<PathBuf>,
     /// Serve metrics (OpenMetrics) at http://127.0.0.1:N/metrics; 0 for any port that is free
     #[arg(long, value_name = "N")]
     pub metrics_port: Option<u16>,

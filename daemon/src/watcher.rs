@@ -210,7 +210,7 @@ impl Watcher {
         let newest: Vec<_> = events.iter().rev().take(50).rev().collect();
         let mut status = json!({
             "creature": self.shared.name, "pid": std::process::id(),
-            "time_s": now.since(self.began).seconds(), "graph_version": self.shared.plugs.version(),
+            "time_s": now.since(self.began).seconds(), "graph_version": self.shared.plugs.version() + mechanisms::desk::revision(),
             "mode": self.mode, "notes": self.notes,
             "halt": {
                 "halted": causes != Causes::NONE, "causes": causes.names(),

@@ -5,6 +5,7 @@
 
 use std::fs;
 use std::io::{self, BufRead, BufReader, Read, Write};
+use std::os::unix::fs::PermissionsExt;
 use std::os::unix::net::{UnixListener, UnixStream};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -16,6 +17,8 @@ use crate::language::Running;
 
 /// Longest request, bytes.
 const REQUEST_MAX: u64 = 64 * 1024;
+/// Who runs the hierarchy commands it, nobody else.
+const OWNER_ONLY: u32 = 0o600;
 /// Either side waits this long for the other.
 const PATIENCE: Duration = Duration::from_secs(2);
 
@@ -84,6 +87,7 @@ impl Listener {
                 fs::remove_file(path)?;
             }
             let socket = UnixListener::bind(path)?;
+            fs::set_permissions(path, fs::Permissions::from_mode(OWNER_ONLY))?;
             socket.set_nonblocking(true)?;
             Ok(socket)
         };

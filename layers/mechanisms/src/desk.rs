@@ -10,13 +10,17 @@
 //! Must never be served by a thread that beats.
 
 use std::path::Path;
-use std::sync::{Mutex, PoisonError};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::thread::JoinHandle;
 use std::time::Duration;
 
 use adroit::hierarchy::{Hierarchy, MechanismIndex};
 use adroit::language::Running;
 use adroit::live::Listener;
 use rtrb::{Consumer, Producer, RingBuffer};
+
+use crate::programs::{BuiltIn, built_in};
 
 /// Hierarchies under way: each is awaited before the next one is sent, so one would do.
 const UNDER_WAY_MAX: usize = 2;
@@ -47,41 +51,96 @@ struct Desk {
 /// The desk of this process, if it has one: a process runs one hierarchy that takes commands.
 static DESK: Mutex<Option<Desk>> = Mutex::new(None);
 
+/// Its revision, beside the lock: the desk is held for as long as a command waits to be taken up.
+static REVISION: AtomicU64 = AtomicU64::new(0);
+
+/// How often the hierarchy of the desk has changed; zero where there is no desk. Waits for nobody.
+#[must_use]
+pub fn revision() -> u64 {
+    REVISION.load(Ordering::Relaxed)
+}
+
+/// What is to be seen of the desk's hierarchy, if this process has a desk.
+pub(crate) fn looked_at<T>(look: impl FnOnce(&Running) -> T) -> Option<T> {
+    let desk = DESK.lock().unwrap_or_else(PoisonError::into_inner);
+    desk.as_ref().map(|desk| look(&desk.running))
+}
+
 /// Where a hierarchy sits in a beating module.
 pub(crate) struct Seat {
     pub(crate) hierarchy: Hierarchy,
     ends: Option<(Consumer<Succession>, Producer<Succession>)>,
 }
 
+/// The desk while it is served; when this is dropped nobody is answered any more, and the socket is gone.
+#[must_use]
+#[derive(Debug)]
+pub struct Served {
+    leave: Arc<AtomicBool>,
+    thread: Option<JoinHandle<()>>,
+}
+
 /// Opens the desk of this process with a program; every module built from now on runs it. With a socket,
-/// commands are served from an ordinary thread until the process ends.
+/// commands are served from an ordinary thread.
 ///
 /// # Errors
 /// In words, when the socket cannot be opened.
-pub fn open(running: Running, socket: Option<&Path>) -> Result<(), String> {
+pub fn open(running: Running, socket: Option<&Path>) -> Result<Served, String> {
     let listener = socket.map(Listener::open).transpose()?;
     *DESK.lock().unwrap_or_else(PoisonError::into_inner) = Some(Desk { running, hand: None });
-    if let Some(listener) = listener {
+    let leave = Arc::new(AtomicBool::new(false));
+    let thread = listener.map(|listener| {
+        let leave = leave.clone();
         std::thread::spawn(move || {
-            loop {
-                if let Some(desk) = &mut *DESK.lock().unwrap_or_else(PoisonError::into_inner) {
-                    let Desk { running, hand } = desk;
-                    listener.serve(running, |running| hand_over(running, hand.as_mut()));
-                }
+            while !leave.load(Ordering::Relaxed) {
+                attend(&listener);
                 std::thread::sleep(LOOK);
             }
-        });
+        })
+    });
+    Ok(Served { leave, thread })
+}
+
+/// Answers those who ask now.
+fn attend(listener: &Listener) {
+    if let Some(Desk { running, hand }) = &mut *DESK.lock().unwrap_or_else(PoisonError::into_inner) {
+        listener.serve(running, |running| hand_over(running, hand.as_mut()));
+        REVISION.store(running.revision(), Ordering::Relaxed);
     }
-    Ok(())
+}
+
+impl Drop for Served {
+    fn drop(&mut self) {
+        self.leave.store(true, Ordering::Relaxed);
+        if let Some(thread) = self.thread.take() {
+            // A panic there was told where it happened.
+            let _ = thread.join();
+        }
+    }
+}
+
+/// Opens the desk for the one hierarchy among modules of these kinds, with its built-in program; see [`open`].
+///
+/// # Errors
+/// In words, when there is none or more than one, or when the socket cannot be opened.
+pub fn open_for<'a>(kinds: impl Iterator<Item = &'a str>, socket: &Path) -> Result<Served, String> {
+    let built_in: Vec<_> = kinds.filter_map(built_in).collect();
+    let [program] = &built_in[..] else {
+        let found = built_in.len();
+        return Err(format!(
+            "expected one module of kind mechanisms.nest or mechanisms.drives to command; the creature has {found}"
+        ));
+    };
+    open(program.running(), Some(socket))
 }
 
 /// A seat with the hierarchy of the desk, or with what `built_in` gives where there is none. Called before the
 /// module beats.
-pub(crate) fn seat(built_in: impl FnOnce() -> Hierarchy) -> Seat {
+pub(crate) fn seat(built_in: &BuiltIn) -> Seat {
     let mut desk = DESK.lock().unwrap_or_else(PoisonError::into_inner);
     let Some(desk) = desk.as_mut() else {
         return Seat {
-            hierarchy: built_in(),
+            hierarchy: built_in.running().hierarchy().clone(),
             ends: None,
         };
     };

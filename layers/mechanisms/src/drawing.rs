@@ -1,10 +1,13 @@
-//! Drawings of the built-in hierarchies, for a page that lights the lamps of their RMs.
+//! Drawings of the hierarchies that run, for a page that lights the lamps of their RMs.
 //!
 //! Must never be asked for on a thread that beats.
 
 use adroit::draw::svg;
-use adroit::language::load;
-use adroit::{drives as allen, nest as builder};
+use adroit::hierarchy::MechanismIndex;
+use adroit::language::Running;
+
+use crate::desk;
+use crate::programs::built_in;
 
 /// A hierarchy drawn in the manner of the source's figure 1.
 #[derive(Clone, Debug)]
@@ -15,26 +18,23 @@ pub struct Drawing {
     pub names: Vec<String>,
 }
 
-/// The built-in hierarchy of a kind of module, if it is one of this crate.
+/// The hierarchy that a module of a kind runs, if it is a kind of this crate: the desk's with all that was commanded,
+/// or the built-in one.
 #[must_use]
 pub fn drawing(kind: &str) -> Option<Drawing> {
-    let (program, vocabulary) = match kind {
-        "mechanisms.nest" => (builder::PROGRAM, builder::vocabulary()),
-        "mechanisms.drives" => (allen::PROGRAM, allen::vocabulary()),
-        _ => return None,
-    };
-    let hierarchy = load(program, &vocabulary).expect("the programs are tested");
+    let built_in = built_in(kind)?;
+    Some(desk::looked_at(draw).unwrap_or_else(|| draw(&built_in.running())))
+}
+
+fn draw(running: &Running) -> Drawing {
+    let hierarchy = running.hierarchy();
     let places = hierarchy
         .levels()
         .iter()
         .flat_map(|level| level.first..level.first + level.width);
-    let names = places.map(|place| {
-        hierarchy
-            .name(adroit::hierarchy::MechanismIndex(place))
-            .to_owned()
-    });
-    Some(Drawing {
-        svg: svg(&hierarchy, &vocabulary),
+    let names = places.map(|place| hierarchy.name(MechanismIndex(place)).to_owned());
+    Drawing {
+        svg: svg(hierarchy, running.vocabulary()),
         names: names.collect(),
-    })
+    }
 }

@@ -6,8 +6,7 @@
 //! ```
 //! What is wanted when stands in a program (`adroit/programs/drives.adroit`); this module brings it wires.
 
-use adroit::drives::{self, Drives, Limits, RANGES, Said, Sensed};
-use adroit::language::load;
+use adroit::drives::{Drives, Limits, RANGES, Said, Sensed};
 use adroit::nest::Point;
 use afsm::{Beat, In, Module, ModuleKind, Out, Settings};
 use ipc::clock::{Span, Time};
@@ -16,6 +15,7 @@ use ipc::wiring::{Declaration, Parameter, Port};
 
 use crate::desk::{self, Seat};
 use crate::lamps::lamps;
+use crate::programs::DRIVES;
 
 const SONAR: In<Map> = In::at(0);
 const ODOMETRY: In<Pose> = In::at(1);
@@ -84,9 +84,8 @@ impl DrivesModule {
             stamina_s: settings.span("stamina").seconds(),
             recovery_s: settings.span("recovery").seconds(),
         };
-        let built_in = || load(drives::PROGRAM, &drives::vocabulary()).expect("the program is tested");
         DrivesModule {
-            seat: desk::seat(built_in),
+            seat: desk::seat(&DRIVES),
             drives: Drives::new(limits),
             limits,
             every: settings.span("every"),

@@ -10,6 +10,7 @@ mod drawing;
 pub mod drives;
 mod lamps;
 pub mod nest;
+mod programs;
 
 pub use drawing::{Drawing, drawing};
 

@@ -9,8 +9,7 @@
 //!
 //! Must never plan: a search allocates. The sequential strategy of the program finds the way.
 
-use adroit::language::load;
-use adroit::nest::{OBSTACLES_TOLD_MAX, PROGRAM, Pilot, Point, Sensed, TOLD_MAX, Told, vocabulary};
+use adroit::nest::{OBSTACLES_TOLD_MAX, Pilot, Point, Sensed, TOLD_MAX, Told};
 use afsm::{Beat, In, Module, ModuleKind, Out, Settings};
 use ipc::clock::Time;
 use ipc::message::{Kind, Map, Polar, Pose, SONARS};
@@ -18,6 +17,7 @@ use ipc::wiring::{Declaration, Parameter, Port};
 
 use crate::desk::{self, Seat};
 use crate::lamps::lamps;
+use crate::programs::NEST;
 
 const POSE: In<Pose> = In::at(0);
 const STEERING: In<f64> = In::at(1);
@@ -135,9 +135,8 @@ fn told(map: &Map) -> [Told; TOLD_MAX] {
 
 impl NestModule {
     fn new(settings: &Settings<'_>) -> NestModule {
-        let built_in = || load(PROGRAM, &vocabulary()).expect("the program is tested");
         NestModule {
-            seat: desk::seat(built_in),
+            seat: desk::seat(&NEST),
             pilot: Pilot::new(settings.number("wanted") as usize),
             began: None,
             acting: false,

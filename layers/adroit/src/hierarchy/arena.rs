@@ -92,6 +92,9 @@ pub struct Hierarchy {
     pub(super) inputs: Box<[Input]>,
     pub(super) levels: Box<[Level]>,
     pub(super) traces: Box<[Trace]>,
+    /// Outputs of the RMs in the latest evaluation, apart from the traces: a selector reads those of its level
+    /// once for each choice it makes.
+    pub(super) excited: Box<[f64]>,
     pub(super) outputs: [Output; OUTPUTS_MAX],
     pub(super) outputs_now: usize,
     pub(super) number: u64,
@@ -117,11 +120,13 @@ impl Hierarchy {
                 .all(|level| usize::from(level.width) <= super::WIDTH_MAX)
         );
         let traces = vec![Trace::NEVER; parts.mechanisms.len()].into_boxed_slice();
+        let excited = vec![0.0; parts.mechanisms.len()].into_boxed_slice();
         Self {
             mechanisms: parts.mechanisms.into_boxed_slice(),
             inputs: parts.inputs.into_boxed_slice(),
             levels: parts.levels.into_boxed_slice(),
             traces,
+            excited,
             outputs: [Output::NONE; OUTPUTS_MAX],
             outputs_now: 0,
             number: 0,

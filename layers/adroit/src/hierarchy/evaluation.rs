@@ -108,23 +108,18 @@ impl Hierarchy {
         for place in first..first + width {
             self.listen(place, given, senses);
         }
-        loop {
-            let Some(largest) = self.largest_output(first, width) else {
-                return false;
-            };
-            let candidates = self.able(first, width, largest, given, senses);
+        while let Some(leaders) = self.leaders(first, width) {
+            let candidates = self.able(first, leaders, given, senses);
             let chosen = self.without_conflicts(first, candidates);
             let mut succeeded = false;
-            let mut rest = chosen;
-            while rest != 0 {
-                let place = first + rest.trailing_zeros() as usize;
-                rest &= rest - 1;
-                succeeded |= self.activate(place, depth, senses);
+            for offset in places(chosen) {
+                succeeded |= self.activate(first + offset, depth, senses);
             }
             if succeeded {
                 return true;
             }
         }
+        false
     }
 
     /// Step 1 for one RM.
@@ -145,40 +140,34 @@ impl Hierarchy {
         trace.excitation = excitation;
         trace.yielded = None;
         trace.listened = self.number;
-        trace.output = if excitation > 0.0 { excitation } else { 0.0 };
-        if trace.refused == self.number && trace.output > 0.0 {
-            trace.output = 0.0;
+        let mut output = if excitation > 0.0 { excitation } else { 0.0 };
+        if trace.refused == self.number && output > 0.0 {
+            output = 0.0;
             trace.yielded = Some(Yielded::Motor);
         }
+        self.excited[place] = output;
         self.asked += 1;
     }
 
-    /// Step 2: the largest output above zero. A value that is no number counts as nothing.
-    fn largest_output(&self, first: usize, width: usize) -> Option<f64> {
-        let mut largest = 0.0;
-        for trace in &self.traces[first..first + width] {
-            if trace.output > largest {
-                largest = trace.output;
+    /// Step 2: the RMs whose output is the largest above zero, one bit each. A value that is no number counts
+    /// as nothing.
+    fn leaders(&self, first: usize, width: usize) -> Option<u64> {
+        let (mut largest, mut bits) = (0.0, 0);
+        for (offset, &output) in self.excited[first..first + width].iter().enumerate() {
+            if output > largest {
+                (largest, bits) = (output, 1 << offset);
+            } else if output == largest {
+                bits |= 1 << offset;
             }
         }
-        (largest > 0.0).then_some(largest)
+        (largest > 0.0).then_some(bits)
     }
 
     /// Step 3: of the RMs with the largest output, those that have a goal yet to be reached; one bit each.
-    fn able<S: Senses + ?Sized>(
-        &mut self,
-        first: usize,
-        width: usize,
-        largest: f64,
-        given: &Goal,
-        senses: &S,
-    ) -> u64 {
+    fn able<S: Senses + ?Sized>(&mut self, first: usize, leaders: u64, given: &Goal, senses: &S) -> u64 {
         let mut able = 0;
-        for offset in 0..width {
+        for offset in places(leaders) {
             let place = first + offset;
-            if self.traces[place].output != largest {
-                continue;
-            }
             match self.find_goal(place, given, senses) {
                 Ok(goal) => {
                     self.traces[place].goal = goal;
@@ -211,11 +200,8 @@ impl Hierarchy {
             return candidates;
         }
         let mut chosen = candidates;
-        let mut rest = candidates;
-        while rest != 0 {
-            let offset = rest.trailing_zeros();
-            rest &= rest - 1;
-            let place = first + offset as usize;
+        for offset in places(candidates) {
+            let place = first + offset;
             if self.mechanisms[place].conflicts.0 & candidates != 0 {
                 self.put_to_zero(place, Yielded::Conflict);
                 chosen &= !(1 << offset);
@@ -257,8 +243,16 @@ impl Hierarchy {
     }
 
     fn put_to_zero(&mut self, place: usize, why: Yielded) {
-        let trace = &mut self.traces[place];
-        trace.output = 0.0;
-        trace.yielded = Some(why);
+        self.excited[place] = 0.0;
+        self.traces[place].yielded = Some(why);
     }
+}
+
+/// The places of the bits that are set, from the lowest up.
+fn places(mut bits: u64) -> impl Iterator<Item = usize> {
+    std::iter::from_fn(move || {
+        let place = (bits != 0).then(|| bits.trailing_zeros() as usize)?;
+        bits &= bits - 1;
+        Some(place)
+    })
 }

@@ -24,7 +24,6 @@ pub struct Trace {
     pub(super) active: u64,
     pub(super) refused: u64,
     pub(super) excitation: f64,
-    pub(super) output: f64,
     pub(super) yielded: Option<Yielded>,
     pub(super) goal: Goal,
 }
@@ -36,7 +35,6 @@ impl Trace {
         active: 0,
         refused: 0,
         excitation: 0.0,
-        output: 0.0,
         yielded: None,
         goal: Goal::NONE,
     };

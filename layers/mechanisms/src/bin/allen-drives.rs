@@ -80,10 +80,13 @@ fn main() -> ExitCode {
             return ExitCode::from(2);
         }
     };
-    if let Err(message) = mechanisms::desk::open(running, asked.socket.as_deref()) {
-        eprintln!("{message}");
-        return ExitCode::FAILURE;
-    }
+    let _served = match mechanisms::desk::open(running, asked.socket.as_deref()) {
+        Ok(served) => served,
+        Err(message) => {
+            eprintln!("{message}");
+            return ExitCode::FAILURE;
+        }
+    };
     afsm::process::run_with(
         mechanisms::drives_manifest(),
         mechanisms::kinds(),
