@@ -29,6 +29,12 @@ pub(crate) struct Asked {
     /// Threads; all cores if not given
     #[arg(long, value_name = "N")]
     threads: Option<usize>,
+    /// First seed: the trials have this one and those that follow
+    #[arg(long, default_value_t = 1, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=100_000))]
+    first: u64,
+    /// List every contact that a robot caused: row, seed, time, with what, how fast, where
+    #[arg(long)]
+    contacts: bool,
     /// Also write the table as Markdown
     #[arg(long, value_name = "FILE")]
     markdown: Option<PathBuf>,
@@ -62,6 +68,9 @@ pub(crate) fn compete(asked: &Asked, as_json: bool) -> ExitCode {
         println!("{}", table::json(&measured));
     } else {
         println!("{}", table::text(&measured));
+        if asked.contacts {
+            println!("{}", table::contacts(&measured));
+        }
     }
     let files = [
         (&asked.markdown, table::markdown as fn(&_) -> String),
@@ -120,6 +129,7 @@ fn order(asked: &Asked) -> Result<Order, Vec<String>> {
     if wrong.is_empty() {
         Ok(Order {
             rows,
+            first: asked.first,
             seeds: asked.seeds,
             hours: asked.hours,
             threads: asked.threads.unwrap_or(cores).clamp(1, 256),

@@ -25,9 +25,14 @@ impl Disc {
 
 /// Where disc `index` ends that would like to be at `wanted`: there, or slid along what is in its
 /// way, or where it was. It moves nothing but itself, and it never ends inside anything if no disc
-/// began there.
+/// began there. Who does not want to move is not moved, though somebody leans on it by the hair that is let
+/// pass: a robot whose wheels stand would otherwise creep half a millimetre a step, and what it crept against
+/// would be called its doing.
 pub(crate) fn settled(space: &Space, discs: &[Disc], index: usize, wanted: Vec2) -> Vec2 {
     let was = discs[index];
+    if wanted == was.at {
+        return was.at;
+    }
     let others = || {
         discs
             .iter()

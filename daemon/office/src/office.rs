@@ -264,6 +264,13 @@ impl Office {
         self.inmates[robot].robot.pose()
     }
 
+    /// Every other robot and every person: the name, and where the middle is, m. For observers and tests.
+    pub fn others_of(&self, robot: usize) -> impl Iterator<Item = (&str, f64, f64)> {
+        let all = self.names.iter().zip(&self.discs).enumerate();
+        all.filter(move |(index, _)| *index != robot)
+            .map(|(_, (name, disc))| (&**name, disc.at.x, disc.at.y))
+    }
+
     /// What has touched the robot so far.
     pub fn contacts(&self) -> &Contacts {
         self.contacts_of(0)

@@ -4,6 +4,21 @@
 
 use serde::Serialize;
 
+/// A contact of the robot's own making: enough to find it again, since every trial can be repeated.
+#[derive(Clone, Debug, Serialize)]
+pub struct Caused {
+    /// Which robot, counted from 1.
+    pub robot: usize,
+    /// When, s of simulated time since the trial began.
+    pub time_s: f64,
+    /// Name of the thing or person, as the office has it.
+    pub other: String,
+    /// The robot's own speed towards it, m/s.
+    pub approach_m_s: f64,
+    /// Where the robot truly was, m.
+    pub at: (f64, f64),
+}
+
 /// The figures of one robot in one trial. Rates are for each hour.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Figures {
@@ -13,8 +28,8 @@ pub struct Figures {
     pub hours: f64,
     /// Contacts that the robot caused: its own speed towards the thing was above 1 cm/s.
     pub caused: f64,
-    /// What they were with, when and how fast: those of them that the world remembers.
-    pub caused_with: Vec<String>,
+    /// What they were with, when and how fast.
+    pub caused_with: Vec<Caused>,
     /// Contacts in all.
     pub contacts: f64,
     /// Halts of a robot that moved.

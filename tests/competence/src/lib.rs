@@ -17,6 +17,7 @@ pub mod measure;
 pub mod plot;
 pub mod row;
 pub mod statistics;
+pub mod story;
 pub mod table;
 pub mod trial;
 

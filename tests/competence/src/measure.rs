@@ -14,7 +14,9 @@ use crate::trial;
 pub struct Order {
     /// The rows.
     pub rows: Vec<&'static Row>,
-    /// Seeds 1 to this for each.
+    /// The first seed.
+    pub first: u64,
+    /// So many seeds for each, the first and those that follow.
     pub seeds: u64,
     /// Simulated hours for each seed.
     pub hours: f64,
@@ -35,7 +37,7 @@ pub struct Measured {
 /// that are under way are dropped and the rest is not begun. Seeds go round the rows, so that whatever is
 /// done when it stops is about the same share of each row.
 pub fn measure(order: &Order, stop: &AtomicBool, done: &(dyn Fn() + Sync)) -> Vec<Measured> {
-    let tasks: Vec<(usize, u64)> = (1..=order.seeds)
+    let tasks: Vec<(usize, u64)> = (order.first..order.first + order.seeds)
         .flat_map(|seed| (0..order.rows.len()).map(move |row| (row, seed)))
         .collect();
     let next = AtomicUsize::new(0);

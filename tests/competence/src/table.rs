@@ -74,6 +74,24 @@ pub fn markdown(measured: &[Measured]) -> String {
     out + "\n" + &goals::text(measured)
 }
 
+/// Every contact of a robot's own making, one a line, so that it can be looked at: every trial can be repeated.
+pub fn contacts(measured: &[Measured]) -> String {
+    let mut out = String::from("row seed robot time_s with m/s x y\n");
+    for it in measured {
+        for figures in &it.figures {
+            for c in &figures.caused_with {
+                let (row, seed) = (it.row.name, figures.seed);
+                let (x, y) = c.at;
+                out += &format!(
+                    "{row} {seed} {} {:.2} {:?} {:.3} {x:.2} {y:.2}\n",
+                    c.robot, c.time_s, c.other, c.approach_m_s
+                );
+            }
+        }
+    }
+    out
+}
+
 /// Everything, single trials included, as JSON.
 pub fn json(measured: &[Measured]) -> Value {
     let row = |it: &Measured| {

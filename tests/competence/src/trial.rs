@@ -11,7 +11,7 @@ use daemon::body::office::{OfficeGuard, OfficeWorld};
 use daemon::body::warehouse::WarehouseWorld;
 use daemon::gate::Causes;
 use daemon::machine::{Machine, kinds};
-use daemon::virtual_run::VirtualRun;
+use daemon::virtual_run::{BEGIN, VirtualRun};
 use ipc::clock::{Span, Time};
 use ipc::message::{Payload, Polar};
 use ipc::wire::{Page, Reader};
@@ -19,7 +19,7 @@ use ipc::wiring::{Source, check, directory::output_ports};
 use office::Pose;
 
 use crate::disturb;
-use crate::figures::Figures;
+use crate::figures::{Caused, Figures};
 use crate::row::{Disturbance, Row};
 
 /// How often the observer looks.
@@ -41,8 +41,8 @@ pub fn all_kinds() -> Kinds {
 }
 
 /// A robot on trial.
-struct Robot {
-    run: VirtualRun,
+pub(crate) struct Robot {
+    pub(crate) run: VirtualRun,
     index: usize,
     wires: Wires,
     watch: Watch,
@@ -65,6 +65,7 @@ struct Watch {
     rooms: BTreeSet<usize>,
     anchor: (f64, f64),
     anchored: Span,
+    touched: u64,
     started: u64,
     arrived: u64,
     place: Option<((f64, f64), Time)>,
@@ -97,16 +98,30 @@ pub fn run_text(
         if look % 600 == 0 && stop() {
             return None;
         }
-        for robot in &mut robots {
-            if let Some(killer) = &mut killer {
-                killer.act(&mut robot.run);
-            }
-            robot.run.advance(LOOK);
+        if let Some(killer) = &mut killer {
+            robots.iter_mut().for_each(|robot| killer.act(&mut robot.run));
         }
+        advance(&mut robots);
         robots.iter_mut().for_each(Robot::look);
     }
     let finish = |robot: Robot| robot.finish(seed, hours);
     Some(robots.into_iter().map(finish).collect())
+}
+
+/// Lets [`LOOK`] pass for all robots. Those in one office take turns beat by beat: whoever ran ahead would let
+/// the world go on under the orders that the other gave before.
+pub(crate) fn advance(robots: &mut [Robot]) {
+    let end = BEGIN + robots[0].run.elapsed() + LOOK;
+    while let Some(next) = robots
+        .iter()
+        .filter_map(|r| r.run.next_beat())
+        .min()
+        .filter(|t| *t < end)
+    {
+        let after = Time(next.0 + 1);
+        robots.iter_mut().for_each(|robot| robot.run.advance_to(after));
+    }
+    robots.iter_mut().for_each(|robot| robot.run.advance_to(end));
 }
 
 fn machine(text: &str) -> Machine {
@@ -117,7 +132,7 @@ fn machine(text: &str) -> Machine {
     Machine::new(creature, &kinds, page, None)
 }
 
-fn robots(row: &Row, text: &str, seed: u64) -> Vec<Robot> {
+pub(crate) fn robots(row: &Row, text: &str, seed: u64) -> Vec<Robot> {
     let mut first = machine(text);
     if row.robots == 1 {
         return vec![Robot::new(first, 0)];
@@ -165,24 +180,31 @@ fn seen(machine: &mut Machine, robot: usize) -> (Pose, Option<usize>) {
     (pose, room)
 }
 
-fn office_of(machine: &mut Machine) -> OfficeGuard<'_> {
+pub(crate) fn office_of(machine: &mut Machine) -> OfficeGuard<'_> {
     world_of(machine).office()
 }
 
+/// The wire called `name`, if the creature has one.
+fn wire(machine: &Machine, name: &str) -> Option<Reader> {
+    let ports = output_ports(&machine.creature).enumerate();
+    let found = ports
+        .map(|(i, (port, declared, _))| (i, port.to_string(), declared.kind))
+        .find(|(_, port, _)| port == name);
+    found.and_then(|(i, _, kind)| machine.page.reader(i, kind))
+}
+
 impl Robot {
+    /// The wire called `name`, if the creature has one.
+    pub(crate) fn wire(&self, name: &str) -> Option<Reader> {
+        wire(&self.run.machine, name)
+    }
+
     fn new(mut machine: Machine, index: usize) -> Robot {
         let (begin, _) = seen(&mut machine, index);
-        let wire = |name: &str| {
-            let ports = output_ports(&machine.creature).enumerate();
-            let found = ports
-                .map(|(i, (port, declared, _))| (i, port.to_string(), declared.kind))
-                .find(|(_, port, _)| port == name);
-            found.and_then(|(i, _, kind)| machine.page.reader(i, kind))
-        };
         let wires = Wires {
-            path: wire("stereo.path"),
-            start: wire("pathplan.start"),
-            reached: wire("pathplan.reached"),
+            path: wire(&machine, "stereo.path"),
+            start: wire(&machine, "pathplan.start"),
+            reached: wire(&machine, "pathplan.reached"),
         };
         Robot {
             run: VirtualRun::new(machine),
@@ -196,6 +218,7 @@ impl Robot {
                 rooms: BTreeSet::new(),
                 anchor: (begin.x, begin.y),
                 anchored: Span::ZERO,
+                touched: 0,
                 started: 0,
                 arrived: 0,
                 place: None,
@@ -229,6 +252,27 @@ impl Robot {
             }
         }
         self.look_at_places(pose);
+        self.look_at_contacts(pose);
+    }
+
+    /// Notes the contacts since the last look that are the robot's doing; the office remembers the latest.
+    fn look_at_contacts(&mut self, pose: Pose) {
+        if warehouse_of(&mut self.run.machine).is_some() {
+            return;
+        }
+        let index = self.index;
+        let office = office_of(&mut self.run.machine);
+        let contacts = office.contacts_of(index);
+        let new = (contacts.all - self.watch.touched) as usize;
+        self.watch.touched = contacts.all;
+        let caused = contacts.recent.iter().rev().take(new).rev().filter(|c| c.caused);
+        self.figures.caused_with.extend(caused.map(|c| Caused {
+            robot: index + 1,
+            time_s: c.time_s,
+            other: c.other.to_string(),
+            approach_m_s: c.approach_m_s,
+            at: (pose.x, pose.y),
+        }));
     }
 
     /// Whether a place was chosen or reached since the last look.
@@ -284,10 +328,6 @@ impl Robot {
         let office = office_of(&mut self.run.machine);
         let contacts = office.contacts_of(self.index);
         figures.caused = contacts.caused as f64;
-        let caused = contacts.recent.iter().filter(|c| c.caused);
-        figures.caused_with = caused
-            .map(|c| format!("{} at {:.1} s, {:.3} m/s", c.other, c.time_s, c.approach_m_s))
-            .collect();
         figures.contacts = contacts.all as f64;
         figures.distance_m = office.distance_travelled_of_m(self.index);
         figures
@@ -295,14 +335,14 @@ impl Robot {
 }
 
 /// Kills level 2 and starts it again.
-struct Killer {
+pub(crate) struct Killer {
     random: Random,
     dead: bool,
     due: Span,
 }
 
 impl Killer {
-    fn new(row: &Row, seed: u64) -> Option<Killer> {
+    pub(crate) fn new(row: &Row, seed: u64) -> Option<Killer> {
         let mut random = Random::new(seed ^ 0x4b11);
         (row.disturbance == Disturbance::Killed).then(|| Killer {
             due: life(&mut random),
@@ -311,7 +351,7 @@ impl Killer {
         })
     }
 
-    fn act(&mut self, run: &mut VirtualRun) {
+    pub(crate) fn act(&mut self, run: &mut VirtualRun) {
         if run.elapsed() < self.due {
             return;
         }

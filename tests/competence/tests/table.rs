@@ -7,6 +7,7 @@ use competence::{Measured, Order, ROWS, goals, measure, plot, row, table};
 fn order(rows: &[&str], seeds: u64, hours: f64, threads: usize) -> Order {
     Order {
         rows: rows.iter().map(|name| row::find(name).expect("a row")).collect(),
+        first: 1,
         seeds,
         hours,
         threads,
