@@ -63,3 +63,28 @@ pub(crate) fn settled(space: &Space, discs: &[Disc], index: usize, wanted: Vec2)
         && others().all(|other| now.gap(other) > -OVERLAP_MAX_M);
     if free { now.at } else { was.at }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::layout::Layout;
+    use crate::plane::vec2;
+
+    #[test]
+    fn who_stands_is_not_crept_along_by_who_leans_on_it() {
+        let space = Space::new(&Layout::empty_room(6.0, 6.0));
+        let robot = Disc {
+            at: vec2(3.0, 3.0),
+            radius: 0.2,
+        };
+        let leaning = Disc {
+            at: vec2(3.42 - OVERLAP_MAX_M / 2.0, 3.0),
+            radius: 0.22,
+        };
+        let discs = [robot, leaning];
+        let stands = settled(&space, &discs, 0, robot.at);
+        assert_eq!(stands, robot.at);
+        let drives = settled(&space, &discs, 0, robot.at + vec2(0.006, 0.0));
+        assert!(drives.x < robot.at.x, "who drives is stopped at {drives:?}");
+    }
+}
