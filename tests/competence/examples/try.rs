@@ -18,7 +18,7 @@ fn main() {
     let next = AtomicU64::new(1);
     let all: Mutex<Vec<Figures>> = Mutex::new(Vec::new());
     std::thread::scope(|scope| {
-        for _ in 0..2 {
+        for _ in 0..1 {
             scope.spawn(|| {
                 loop {
                     let seed = next.fetch_add(1, Ordering::Relaxed);

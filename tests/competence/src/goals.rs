@@ -76,7 +76,9 @@ pub fn all(measured: &[Measured]) -> Vec<Goal> {
             reached: share.value >= 90.0,
         });
     }
-    let pairs = [("nonsense", "0"), ("killed", "01")];
+    // A level 2 that is killed and started again lives half of the time, and takes the robot to where people
+    // are: that is not the lower levels' doing. Killed for good it should leave them as they are alone.
+    let pairs = [("nonsense", "0"), ("cut", "01"), ("killed", "01")];
     for (disturbed, alone) in pairs {
         if let (Some(disturbed), Some(alone)) = (of(disturbed), of(alone)) {
             goals.push(same(disturbed, alone, "caused/h"));

@@ -15,6 +15,8 @@ pub enum Disturbance {
     None,
     /// Level 2 is killed and started again at random, dead half of the time.
     Killed,
+    /// Level 2 is killed a minute after the start and stays dead: what is left should do as it does alone.
+    Cut,
     /// In the place of levels 1 and 2 run layers that write what is no message, a thousand times a second.
     Nonsense,
     /// In their place run layers that write random headings, a thousand times a second.
@@ -98,6 +100,13 @@ pub const ROWS: &[Row] = &[
         title: "0+1+2, level 2 killed and restarted",
         levels: 3,
         disturbance: Disturbance::Killed,
+        ..PLAIN
+    },
+    Row {
+        name: "cut",
+        title: "0+1+2, level 2 killed for good",
+        levels: 3,
+        disturbance: Disturbance::Cut,
         ..PLAIN
     },
     Row {

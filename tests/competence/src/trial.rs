@@ -34,6 +34,8 @@ const STUCK: (Span, f64) = (Span::secs(30), 0.25);
 const REACHED_M: f64 = 1.0;
 /// Mean time that a killed layer lives, and that it is dead, s.
 const LIFE_S: f64 = 90.0;
+/// When a layer that is killed for good dies: it has spoken by then, and has hardly taken the robot anywhere.
+const CUT_AFTER: Span = Span::secs(60);
 
 /// Modules of Allen and of the disturbances.
 pub fn all_kinds() -> Kinds {
@@ -334,29 +336,37 @@ impl Robot {
     }
 }
 
-/// Kills level 2 and starts it again.
+/// Kills level 2, once for all or to start it again and again.
 pub(crate) struct Killer {
     random: Random,
     dead: bool,
-    due: Span,
+    /// When to act next; never again with none.
+    due: Option<Span>,
+    restarts: bool,
 }
 
 impl Killer {
     pub(crate) fn new(row: &Row, seed: u64) -> Option<Killer> {
         let mut random = Random::new(seed ^ 0x4b11);
-        (row.disturbance == Disturbance::Killed).then(|| Killer {
-            due: life(&mut random),
+        let (due, restarts) = match row.disturbance {
+            Disturbance::Killed => (life(&mut random), true),
+            Disturbance::Cut => (CUT_AFTER, false),
+            _ => return None,
+        };
+        Some(Killer {
             random,
             dead: false,
+            due: Some(due),
+            restarts,
         })
     }
 
     pub(crate) fn act(&mut self, run: &mut VirtualRun) {
-        if run.elapsed() < self.due {
+        if self.due.is_none_or(|due| run.elapsed() < due) {
             return;
         }
         self.dead = !self.dead;
-        self.due = run.elapsed() + life(&mut self.random);
+        self.due = self.restarts.then(|| run.elapsed() + life(&mut self.random));
         let stations = run.machine.stations.iter();
         let explore = stations
             .map(|s| s.spec.level)
