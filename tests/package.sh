@@ -59,7 +59,7 @@ for program in subsumed subsumed-body subsumectl $(basename -s .rs layers/*/src/
     [ -s "$stage/next/$file" ] || fail "$file is missing"
   done
 done
-for file in layers/allen/allen*.toml; do
+for file in layers/allen/allen*.toml layers/mechanisms/nest.toml layers/truckin/truck.toml; do
   "$bin/subsumectl" check "$stage/next/usr/share/subsumed/creatures/$(basename "$file")" >/dev/null || fail "$file is not sound as packed"
 done
 "$bin/subsumectl" test "$stage/next/usr/share/subsumed/creatures/scenarios" >/dev/null || fail "the scenarios fail as packed"

@@ -26,6 +26,7 @@ use std::time::{Duration, Instant};
 use sd_notify::NotifyState;
 
 use crate::executor::gauge::BeatGauge;
+use crate::executor::host;
 use crate::gate::Causes;
 use crate::running::Shared;
 
@@ -179,6 +180,7 @@ pub fn feed(
     let wanted = sd_notify::watchdog_enabled();
     let meal = wanted.map_or(MEAL, |wanted| (wanted / 4).min(MEAL));
     std::thread::Builder::new().name("feeder".into()).spawn(move || {
+        host::come_first();
         let (mut eaten, mut hungry) = (0, None::<Instant>);
         let (mut beaten_at, mut herald) = (None::<u64>, Herald::default());
         let mut said = String::new();

@@ -366,6 +366,7 @@ fn live(
     leave: Arc<AtomicBool>,
 ) -> std::io::Result<JoinHandle<()>> {
     std::thread::Builder::new().name("world".into()).spawn(move || {
+        host::come_first();
         let mut due = clock::monotonic();
         while !leave.load(Ordering::Relaxed) {
             let now = clock::monotonic();

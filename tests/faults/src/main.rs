@@ -4,6 +4,7 @@ mod causes;
 mod draws;
 mod host;
 mod inside;
+mod kept;
 mod layers;
 mod lives;
 mod observe;
@@ -15,12 +16,13 @@ mod suite;
 mod table;
 mod trial;
 
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 
 use causes::{CAUSES, Cause};
-use outcome::Outcome;
+use kept::Kept;
 use programs::Programs;
 use table::{Row, Table};
 use trial::Trial;
@@ -36,7 +38,8 @@ static ALLOCATOR: daemon::alloc::Counting = daemon::alloc::Counting;
     after_help = "Examples:\n  \
     faults                              every cause a few times, in less than two minutes\n  \
     faults --cause daemon-kill          one cause\n  \
-    faults --seeds 1000 --markdown      the long run, for the page on reliability\n  \
+    faults --seeds 1000 --keep runs.jsonl --markdown\n  \
+                                        the long run, half a day; stopped or killed, it goes on where it was\n  \
     faults soak --minutes 60            what grows, and what breaks once in a thousand times\n\n\
     Status: 0 when all is as specified; 1 when a halt was missed or a bound broken; 2 for bad input."
 )]
@@ -47,6 +50,9 @@ struct Options {
     /// The first seed
     #[arg(long, default_value_t = 1, value_name = "N")]
     from: u64,
+    /// Keep the outcome of every injection in this file, and go on where it ends
+    #[arg(long, value_name = "FILE")]
+    keep: Option<PathBuf>,
     /// Only these causes (see --list)
     #[arg(long, num_args = 1.., value_name = "NAME")]
     cause: Vec<String>,
@@ -198,36 +204,47 @@ fn chosen(names: &[String]) -> Result<Vec<&'static Cause>, String> {
         .collect())
 }
 
+/// Seeds are gone through together: a run that is stopped early has tried every cause about as often.
 fn try_all(options: &Options, programs: &Programs, chosen: &[&'static Cause]) -> Result<Table, String> {
     let interrupted = suite::on_interrupt()?;
-    let goes_on = || !interrupted.load(std::sync::atomic::Ordering::Relaxed);
-    let mut rows = Vec::new();
-    let mut number = 0;
-    for &cause in chosen {
-        let began = std::time::Instant::now();
-        let mut outcomes: Vec<(u64, Outcome)> = Vec::new();
-        let seeds = options.from..options.from.saturating_add(options.seeds);
-        for seed in seeds.take_while(|_| goes_on()) {
-            number += 1;
-            let outcome = suite::inject(programs, cause, seed, number)?;
-            for broken in &outcome.broken {
-                eprintln!("{} --seed {seed}: {broken}", cause.name);
-            }
-            let skipped = outcome.skipped.is_some();
-            outcomes.push((seed, outcome));
-            if skipped {
-                break;
-            }
+    let mut kept = Kept::open(options.keep.as_deref())?;
+    let seeds = options.from..options.from.saturating_add(options.seeds);
+    let wanted: Vec<(u64, &Cause)> = seeds
+        .flat_map(|seed| chosen.iter().map(move |&cause| (seed, cause)))
+        .filter(|(seed, cause)| kept.outcome(cause.name, *seed).is_none())
+        .collect();
+    let began = std::time::Instant::now();
+    for (number, (seed, cause)) in wanted.iter().enumerate() {
+        if interrupted.load(std::sync::atomic::Ordering::Relaxed) {
+            break;
         }
+        let skipped = kept.of(cause.name).iter().any(|(_, o)| o.skipped.is_some());
+        if skipped {
+            continue;
+        }
+        let outcome = suite::inject(programs, cause, *seed, number + 1)?;
+        let result = if outcome.broken.is_empty() {
+            "as specified"
+        } else {
+            "NOT AS SPECIFIED"
+        };
+        let left = began.elapsed() / (number as u32 + 1) * (wanted.len() - number - 1) as u32;
         eprintln!(
-            "{:17} {:5} times in {:.1} s",
-            cause.name,
-            outcomes.len(),
-            began.elapsed().as_secs_f64()
+            "{:6} of {}, {}:{:02} left  {:17} --seed {seed}: {result}",
+            number + 1,
+            wanted.len(),
+            left.as_secs() / 60,
+            left.as_secs() % 60,
+            cause.name
         );
-        if !outcomes.is_empty() {
-            rows.push(Row { cause, outcomes });
+        for broken in &outcome.broken {
+            eprintln!("{} --seed {seed}: {broken}", cause.name);
         }
+        kept.add(cause.name, *seed, outcome)?;
     }
-    Ok(Table(rows))
+    let rows = chosen.iter().map(|&cause| Row {
+        cause,
+        outcomes: kept.of(cause.name),
+    });
+    Ok(Table(rows.filter(|row| !row.outcomes.is_empty()).collect()))
 }

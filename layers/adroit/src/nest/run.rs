@@ -161,7 +161,7 @@ impl World {
             if followed {
                 sweep.go(place, now_s);
             } else {
-                sweep.pause();
+                sweep.pause(now_s);
             }
         }
     }

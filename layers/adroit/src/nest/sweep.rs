@@ -9,8 +9,8 @@ const LOOK_OUTS: usize = 8;
 const MARGIN_M: f64 = 2.5;
 /// A look-out counts as visited from here on, metres; more than an obstacle standing on it keeps the robot away.
 const VISITED_M: f64 = 1.1;
-/// On its way to one look-out for longer than this the robot gives it up, seconds: twice what the longest way
-/// between two of them takes.
+/// On its way to one look-out for longer than this in all, whatever came between, the robot gives it up, seconds:
+/// twice what the longest way between two of them takes.
 const GIVE_UP_S: f64 = 60.0;
 
 /// The look-outs, around the floor.
@@ -37,6 +37,8 @@ pub(crate) struct Sweep {
     ended_s: Option<f64>,
     /// The look-out gone to, and since when, seconds.
     going: Option<(usize, f64)>,
+    /// How long it was on its way to each, in all, until it turned to something else, seconds.
+    spent_s: [f64; LOOK_OUTS],
     /// Whether the round showed what was looked for.
     pub(crate) found: bool,
 }
@@ -57,19 +59,23 @@ impl Sweep {
     pub(crate) fn go(&mut self, place: Point, now_s: f64) {
         let next = self.nearest(place);
         if self.going.map(|(going, _)| going) != next {
+            self.pause(now_s);
             self.going = next.map(|next| (next, now_s));
         }
     }
 
     /// The robot turned to something else.
-    pub(crate) fn pause(&mut self) {
-        self.going = None;
+    pub(crate) fn pause(&mut self, now_s: f64) {
+        if let Some((going, since_s)) = self.going.take() {
+            self.spent_s[going] += now_s - since_s;
+        }
     }
 
-    /// A look-out that cannot be reached counts as visited: the GSM reports failure, and the round goes on.
+    /// A look-out that cannot be reached counts as visited: the GSM reports failure, and the round goes on. Being
+    /// called away and back does not start its time anew, or two drives could call the robot to and fro for ever.
     fn give_up(&mut self, now_s: f64) {
         if let Some((going, since_s)) = self.going
-            && now_s - since_s > GIVE_UP_S
+            && self.spent_s[going] + now_s - since_s > GIVE_UP_S
         {
             self.visited[going] = true;
             self.going = None;
