@@ -29,6 +29,8 @@ halted() { "$bin/subsumectl" --creature tops status --json | grep -q '"halted":t
 for _ in $(seq 200); do "$bin/subsumectl" --creature tops status >/dev/null 2>&1 && break; sleep 0.1; done
 "$bin/allen-wander" --creature tops >"$work/wander.log" 2>&1 & wander=$!
 
+# A server without sessions leaves, and the next session would find it leaving.
+tmux -f /dev/null new-session -d -s stays "sleep 600"
 for size in 80x24 200x60; do
   tmux -f /dev/null new-session -d -s top -x "${size%x*}" -y "${size#*x}" "$bin/subsumectl --creature tops top 2>$work/top.log; echo left with status \$?; sleep 60"
   shows '^the body may move'
