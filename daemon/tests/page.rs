@@ -76,9 +76,14 @@ fn a_layer_shows_when_it_is_plugged_and_goes_when_it_is_killed() {
     browser.sees(
         "[...document.querySelectorAll('#wiring .pulse')].some((pulse) => pulse.getAnimations().length > 0)",
     );
+    let driven = "document.querySelector('#holders').textContent";
+    browser.sees(&format!(
+        "{driven}.includes('turn.heading hears avoid.heading of wander (level 1)')"
+    ));
     let pid = wander.pid();
     wander.kill();
     browser.sees(&format!("{drawn} === null"));
+    browser.sees(&format!("!{driven}.includes('wander')"));
     browser.sees("document.querySelector('#latency [data-latency=wander]') === null");
     let died = format!("layer wander (pid {pid}) died");
     browser.sees(&format!(

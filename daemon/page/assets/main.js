@@ -4,6 +4,7 @@ import { get, TokenWanted } from "./daemon.js";
 import { showEvents } from "./events.js";
 import { listen, showHalt } from "./halt.js";
 import { setHierarchies, showHierarchies } from "./hierarchy.js";
+import { showHolders } from "./holders.js";
 import { nameTitle, onView } from "./views.js";
 import { showLatency } from "./latency.js";
 import { forgetTimeline, redrawTimeline, showTimeline } from "./timeline.js";
@@ -94,6 +95,7 @@ async function beat() {
     show(showHierarchies, state);
     show(showOotland, state);
     show(showWiring, state);
+    show(showHolders, state);
     show(showTimeline, state);
     show(showWire, state);
     show(showWires, state.wires);

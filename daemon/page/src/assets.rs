@@ -43,6 +43,7 @@ static ASSETS: &[Asset] = &[
     asset!("/ootland_map.js", SCRIPT, "ootland_map.js"),
     asset!("/wiring.js", SCRIPT, "wiring.js"),
     asset!("/hierarchy.js", SCRIPT, "hierarchy.js"),
+    asset!("/holders.js", SCRIPT, "holders.js"),
     asset!("/nest.js", SCRIPT, "nest.js"),
     asset!("/pulses.js", SCRIPT, "pulses.js"),
     asset!("/views.js", SCRIPT, "views.js"),
