@@ -3,6 +3,8 @@
 //! Must never compare moments: a layer that happens to be there is no growth. What is compared are the smallest
 //! (descriptors, files) and the middle (memory) of two stretches of the run.
 
+use std::ops::Range;
+
 use ipc::clock::Span;
 use serde::{Deserialize, Serialize};
 
@@ -31,6 +33,8 @@ const MORE_MAX: [u64; KINDS] = [1024, 512, 0, 0, 0];
 /// the last minute holds more than the one before.
 const WARM_UP: Span = Span::secs(90);
 
+const MINUTE: Span = Span::secs(60);
+
 /// Shortest run of which growth is judged.
 pub(super) const JUDGED_MIN: Span = Span::secs(300);
 
@@ -55,6 +59,8 @@ pub(super) struct Line {
     pub(super) most: u64,
     /// How much more it may be late than early.
     pub(super) more_max: u64,
+    /// The middle of each minute, for whoever asks whether it grows on or came to an end.
+    pub(super) by_minute: Vec<u64>,
 }
 
 impl Growth {
@@ -87,12 +93,16 @@ impl Growth {
         let third = (last.at.0 - WARM_UP.0) / 3;
         let early = WARM_UP.0..WARM_UP.0 + third;
         let late = last.at.0 - third..last.at.0 + 1;
-        let of = |kind: usize, stretch: std::ops::Range<u64>| {
-            let within = self.samples.iter().filter(|s| stretch.contains(&s.at.0));
-            let mut held: Vec<u64> = within.map(|s| s.held[kind]).collect();
-            held.sort_unstable();
+        let of = |kind: usize, stretch: Range<u64>| {
+            let held = self.held(kind, stretch);
             let place = if MORE_MAX[kind] > 0 { held.len() / 2 } else { 0 };
             held.get(place).copied().unwrap_or(0)
+        };
+        let minutes = |kind: usize| {
+            let stretches = (0..last.at.0 / MINUTE.0).map(|n| n * MINUTE.0..(n + 1) * MINUTE.0);
+            let held = stretches.map(|stretch| self.held(kind, stretch));
+            held.filter_map(|held| held.get(held.len() / 2).copied())
+                .collect()
         };
         (0..KINDS)
             .map(|kind| Line {
@@ -101,8 +111,17 @@ impl Growth {
                 late: of(kind, late.clone()),
                 most: self.samples.iter().map(|s| s.held[kind]).max().unwrap_or(0),
                 more_max: MORE_MAX[kind],
+                by_minute: minutes(kind),
             })
             .collect()
+    }
+
+    /// What was held of a kind in a stretch of nanoseconds since the start, least first.
+    fn held(&self, kind: usize, stretch: Range<u64>) -> Vec<u64> {
+        let within = self.samples.iter().filter(|s| stretch.contains(&s.at.0));
+        let mut held: Vec<u64> = within.map(|s| s.held[kind]).collect();
+        held.sort_unstable();
+        held
     }
 }
 
@@ -150,6 +169,8 @@ mod tests {
             [false, false, true, true, true]
         );
         let memory = after(60, |second| busy(second) + second);
+        assert_eq!(memory[0].by_minute.len(), 60);
+        assert!(memory[0].by_minute.is_sorted());
         assert!(memory.iter().all(Line::grew));
         assert!(after(4, busy).is_empty(), "too short to say");
     }

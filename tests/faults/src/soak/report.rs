@@ -89,6 +89,7 @@ impl Report {
                 late,
                 most,
                 more_max,
+                ..
             } = line;
             text.push_str(&format!("| {what} | {early} | {late} | {most} | {more_max} |\n"));
         }
