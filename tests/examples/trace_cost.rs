@@ -36,7 +36,7 @@ impl Beats for Layer {
     }
 }
 
-/// Fifty pairs of Allen's `turn` and `forward`: each writes its rate or speed with every beat.
+/// Fifty pairs of Allen's `turn` and `forward`: each writes its rate or speed with every beat, by one compass.
 fn text() -> String {
     let mut text = String::from(
         "creature = \"hundred\"\n[[layer]]\nname = \"many\"\nlevel = 0\nperiod = \"1ms\"\nwires = [\n",
@@ -44,10 +44,10 @@ fn text() -> String {
     for k in 0..50 {
         let _ = writeln!(
             text,
-            "\"t{k}.go -> f{k}.go\", \"f{k}.done -> t{k}.done\", \"t{k}.rate -> t{k}.compass\","
+            "\"t{k}.go -> f{k}.go\", \"f{k}.done -> t{k}.done\", \"north.out -> t{k}.compass\","
         );
     }
-    text += "]\n[layer.modules]\n";
+    text += "]\n[layer.modules]\nnorth = { kind = \"constant\", value = 0.0, every = \"1ms\" }\n";
     for k in 0..50 {
         let _ = writeln!(
             text,
