@@ -218,7 +218,7 @@ fn try_all(options: &Options, programs: &Programs, chosen: &[&'static Cause]) ->
         if interrupted.load(std::sync::atomic::Ordering::Relaxed) {
             break;
         }
-        let skipped = kept.of(cause.name).iter().any(|(_, o)| o.skipped.is_some());
+        let skipped = kept.of(cause.name).any(|(_, o)| o.skipped.is_some());
         if skipped {
             continue;
         }
@@ -244,7 +244,10 @@ fn try_all(options: &Options, programs: &Programs, chosen: &[&'static Cause]) ->
     }
     let rows = chosen.iter().map(|&cause| Row {
         cause,
-        outcomes: kept.of(cause.name),
+        outcomes: kept
+            .of(cause.name)
+            .map(|(seed, outcome)| (seed, outcome.clone()))
+            .collect(),
     });
     Ok(Table(rows.filter(|row| !row.outcomes.is_empty()).collect()))
 }

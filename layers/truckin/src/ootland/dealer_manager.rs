@@ -34,6 +34,20 @@ pub struct Opening {
     pub item_storage: i32,
 }
 
+impl Opening {
+    /// Of a dealer who advertises this and has nothing, nor room for anything.
+    pub(crate) fn of(card: Card) -> Self {
+        Self {
+            card,
+            capital_cents: 0,
+            crates: 0,
+            items: 0,
+            crate_storage: 0,
+            item_storage: 0,
+        }
+    }
+}
+
 /// Keeps one dealer's books.
 #[derive(Clone, Debug)]
 pub struct Manager {
@@ -56,14 +70,7 @@ impl Manager {
 
     /// The books of a dealer who advertises this and has nothing.
     pub(crate) fn of_card(card: Card) -> Self {
-        Self::new(Opening {
-            card,
-            capital_cents: 0,
-            crates: 0,
-            items: 0,
-            crate_storage: 0,
-            item_storage: 0,
-        })
+        Self::new(Opening::of(card))
     }
 
     /// The books of a dealer who trades nothing.

@@ -158,14 +158,7 @@ impl World {
             buying_cents: 0,
             selling_cents: 0,
         };
-        let mut opening = Opening {
-            card,
-            capital_cents: 0,
-            crates: 0,
-            items: 0,
-            crate_storage: 0,
-            item_storage: 0,
-        };
+        let mut opening = Opening::of(card);
         let dealer = match fixed.kind {
             Kind::Idle => Dealer::Idle(Idle),
             Kind::Producer => {
