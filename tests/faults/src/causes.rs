@@ -22,6 +22,8 @@ pub(crate) struct Cause {
     pub(crate) bound: &'static str,
     /// Whether it needs shared memory of its own.
     pub(crate) own_memory: bool,
+    /// Cores that real-time threads of it keep busy; two where one of them never returns, so that another is free.
+    pub(crate) cores: usize,
     /// Injects it once.
     pub(crate) inject: fn(&mut Trial) -> Result<(), String>,
 }
@@ -35,6 +37,7 @@ const fn goes_on(name: &'static str, about: &'static str, inject: Inject) -> Cau
         expected: Expected::GoesOn,
         bound: "",
         own_memory: false,
+        cores: 0,
         inject,
     }
 }
@@ -46,8 +49,13 @@ const fn halts(name: &'static str, about: &'static str, bound: &'static str, inj
         expected: Expected::Halt,
         bound,
         own_memory: false,
+        cores: 0,
         inject,
     }
+}
+
+const fn keeping(cores: usize, cause: Cause) -> Cause {
+    Cause { cores, ..cause }
 }
 
 const APART: &str = "the body's stale limit + 1 period";
@@ -119,46 +127,67 @@ pub(crate) static CAUSES: &[Cause] = &[
         "the body's stale limit + 2 periods",
         lives::panics_inside,
     ),
-    halts(
-        "inside-loop",
-        "a vital layer inside the daemon never returns",
-        "50 ms of silence + 2 periods",
-        |t| lives::breaks_inside(t, Break::Loop, "vital layer late", lives::VITAL_LATE),
+    keeping(
+        2,
+        halts(
+            "inside-loop",
+            "a vital layer inside the daemon never returns",
+            "50 ms of silence + 2 periods",
+            |t| lives::breaks_inside(t, Break::Loop, "vital layer late", lives::VITAL_LATE),
+        ),
     ),
-    halts(
-        "inside-overrun",
-        "a layer with `overrun = \"halt\"` overruns",
-        "2 of its periods + 2 periods",
-        |t| lives::breaks_inside(t, Break::Overrun, "overrun", lives::OVERRUN_LATE),
+    keeping(
+        1,
+        halts(
+            "inside-overrun",
+            "a layer with `overrun = \"halt\"` overruns",
+            "2 of its periods + 2 periods",
+            |t| lives::breaks_inside(t, Break::Overrun, "overrun", lives::OVERRUN_LATE),
+        ),
     ),
-    goes_on(
-        "inside-skip",
-        "a layer with `overrun = \"skip\"` overruns",
-        lives::skips_inside,
+    keeping(
+        1,
+        goes_on(
+            "inside-skip",
+            "a layer with `overrun = \"skip\"` overruns",
+            lives::skips_inside,
+        ),
     ),
-    halts(
-        "body-kill",
-        "the body's process dies, another comes",
-        "the pulse's stale limit + 2 periods",
-        |t| lives::body_lost(t, Signal::KILL),
+    keeping(
+        1,
+        halts(
+            "body-kill",
+            "the body's process dies, another comes",
+            "the pulse's stale limit + 2 periods",
+            |t| lives::body_lost(t, Signal::KILL),
+        ),
     ),
-    halts(
-        "body-stop",
-        "the body's process freezes and thaws",
-        "the pulse's stale limit + 2 periods",
-        |t| lives::body_lost(t, Signal::STOP),
+    keeping(
+        1,
+        halts(
+            "body-stop",
+            "the body's process freezes and thaws",
+            "the pulse's stale limit + 2 periods",
+            |t| lives::body_lost(t, Signal::STOP),
+        ),
     ),
-    halts(
-        "emergency-stop",
-        "an operator's emergency stop",
-        "2 periods + 1 until the caller is heard",
-        lives::emergency_stop,
+    keeping(
+        1,
+        halts(
+            "emergency-stop",
+            "an operator's emergency stop",
+            "2 periods + 1 until the caller is heard",
+            lives::emergency_stop,
+        ),
     ),
-    halts(
-        "sigterm",
-        "SIGTERM in the middle of a long step",
-        "20 ms + 2 periods",
-        lives::ends_in_mid_step,
+    keeping(
+        1,
+        halts(
+            "sigterm",
+            "SIGTERM in the middle of a long step",
+            "20 ms + 2 periods",
+            lives::ends_in_mid_step,
+        ),
     ),
     goes_on(
         "second-daemon",

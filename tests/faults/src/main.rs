@@ -38,8 +38,8 @@ static ALLOCATOR: daemon::alloc::Counting = daemon::alloc::Counting;
     after_help = "Examples:\n  \
     faults                              every cause a few times, in less than two minutes\n  \
     faults --cause daemon-kill          one cause\n  \
-    faults --seeds 1000 --keep runs.jsonl --markdown\n  \
-                                        the long run, half a day; stopped or killed, it goes on where it was\n  \
+    faults --seeds 1000 --jobs 4 --keep runs.jsonl --markdown\n  \
+                                        the long run, hours; stopped or killed, it goes on where it was\n  \
     faults soak --minutes 60            what grows, and what breaks once in a thousand times\n\n\
     Status: 0 when all is as specified; 1 when a halt was missed or a bound broken; 2 for bad input."
 )]
@@ -53,6 +53,10 @@ struct Options {
     /// Keep the outcome of every injection in this file, and go on where it ends
     #[arg(long, value_name = "FILE")]
     keep: Option<PathBuf>,
+    /// Injections at once, each on a stage of its own: each other's load, so some times are longer. Of those
+    /// that keep a core busy, as many as there are cores
+    #[arg(long, default_value_t = 1, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=16))]
+    jobs: u8,
     /// Only these causes (see --list)
     #[arg(long, num_args = 1.., value_name = "NAME")]
     cause: Vec<String>,
@@ -204,44 +208,16 @@ fn chosen(names: &[String]) -> Result<Vec<&'static Cause>, String> {
         .collect())
 }
 
-/// Seeds are gone through together: a run that is stopped early has tried every cause about as often.
+/// What is not yet in the file is tried, and the table of all of it made.
 fn try_all(options: &Options, programs: &Programs, chosen: &[&'static Cause]) -> Result<Table, String> {
-    let interrupted = suite::on_interrupt()?;
     let mut kept = Kept::open(options.keep.as_deref())?;
     let seeds = options.from..options.from.saturating_add(options.seeds);
-    let wanted: Vec<(u64, &Cause)> = seeds
+    // Seeds are gone through together: a run that is stopped early has tried every cause about as often.
+    let wanted = seeds
         .flat_map(|seed| chosen.iter().map(move |&cause| (seed, cause)))
         .filter(|(seed, cause)| kept.outcome(cause.name, *seed).is_none())
         .collect();
-    let began = std::time::Instant::now();
-    for (number, (seed, cause)) in wanted.iter().enumerate() {
-        if interrupted.load(std::sync::atomic::Ordering::Relaxed) {
-            break;
-        }
-        let skipped = kept.of(cause.name).any(|(_, o)| o.skipped.is_some());
-        if skipped {
-            continue;
-        }
-        let outcome = suite::inject(programs, cause, *seed, number + 1)?;
-        let result = if outcome.broken.is_empty() {
-            "as specified"
-        } else {
-            "NOT AS SPECIFIED"
-        };
-        let left = began.elapsed() / (number as u32 + 1) * (wanted.len() - number - 1) as u32;
-        eprintln!(
-            "{:6} of {}, {}:{:02} left  {:17} --seed {seed}: {result}",
-            number + 1,
-            wanted.len(),
-            left.as_secs() / 60,
-            left.as_secs() % 60,
-            cause.name
-        );
-        for broken in &outcome.broken {
-            eprintln!("{} --seed {seed}: {broken}", cause.name);
-        }
-        kept.add(cause.name, *seed, outcome)?;
-    }
+    suite::inject_all(programs, wanted, options.jobs.into(), &mut kept)?;
     let rows = chosen.iter().map(|&cause| Row {
         cause,
         outcomes: kept

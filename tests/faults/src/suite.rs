@@ -4,18 +4,20 @@
 //!   suite ── stage ──► `faults inject CAUSE` ──► daemon, body, layers ──► outcome, one line of JSON
 //!         ◄── what is left in shared memory, in iceoryx2's directory, in the run directory ── nothing
 //! ```
-//! Must never run two injections at once: they would be each other's load.
+//! Must never run two injections at once that take a core to themselves: nothing would be left to halt them. Others
+//! may run side by side, as each other's load.
 
 use std::os::unix::process::CommandExt;
 use std::process::{Child, Command, Stdio};
-use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::{Arc, Condvar, Mutex, MutexGuard};
 use std::time::{Duration, Instant};
 
 use signal_hook::consts::SIGINT;
 use stage::Stage;
 
 use crate::causes::Cause;
+use crate::kept::Kept;
 use crate::outcome::Outcome;
 use crate::programs::Programs;
 
@@ -28,16 +30,129 @@ const GONE_MAX: Duration = Duration::from_secs(3);
 /// Size of the shared memory of an injection that fills it.
 const OWN_MEMORY: &str = "4m";
 
+/// Makes all of these injections, `jobs` at once, and keeps what came of each as soon as it is known.
+///
+/// # Errors
+/// When no process can be started at all, or nothing kept.
+pub(crate) fn inject_all(
+    programs: &Programs,
+    wanted: Vec<(u64, &'static Cause)>,
+    jobs: usize,
+    kept: &mut Kept,
+) -> Result<(), String> {
+    let queue = Queue {
+        interrupted: on_interrupt()?,
+        began: Instant::now(),
+        next: AtomicUsize::new(0),
+        cores: Cores::of_the_host(),
+        kept: Mutex::new((kept, 0)),
+        wanted,
+    };
+    std::thread::scope(|scope| {
+        let workers: Vec<_> = (0..jobs).map(|_| scope.spawn(|| queue.work(programs))).collect();
+        let ended = workers.into_iter().map(|worker| worker.join());
+        ended
+            .map(|result| result.unwrap_or_else(|_| Err("an injection's thread panicked".into())))
+            .collect()
+    })
+}
+
+/// Cores that real-time threads of injections may keep busy.
+struct Cores {
+    all: usize,
+    free: Mutex<usize>,
+    given_back: Condvar,
+}
+
+impl Cores {
+    fn of_the_host() -> Cores {
+        let all = std::thread::available_parallelism().map_or(1, usize::from);
+        Cores {
+            all,
+            free: Mutex::new(all),
+            given_back: Condvar::new(),
+        }
+    }
+
+    /// Waits until so many are free, and takes them; all, if there are fewer.
+    fn take(&self, wanted: usize) -> usize {
+        let wanted = wanted.min(self.all);
+        let free = self.free.lock().expect("nobody panics holding it");
+        let enough = self.given_back.wait_while(free, |free| *free < wanted);
+        *enough.expect("nobody panics holding it") -= wanted;
+        wanted
+    }
+
+    fn give_back(&self, taken: usize) {
+        *self.free.lock().expect("nobody panics holding it") += taken;
+        self.given_back.notify_all();
+    }
+}
+
+/// Injections that are still to be made, and where their outcomes go.
+struct Queue<'a> {
+    wanted: Vec<(u64, &'static Cause)>,
+    next: AtomicUsize,
+    interrupted: Arc<AtomicBool>,
+    began: Instant,
+    cores: Cores,
+    /// And how many were made.
+    kept: Mutex<(&'a mut Kept, usize)>,
+}
+
+impl<'a> Queue<'a> {
+    /// Makes injections until none is left, or Ctrl-C.
+    fn work(&self, programs: &Programs) -> Result<(), String> {
+        while !self.interrupted.load(Ordering::Relaxed) {
+            let number = self.next.fetch_add(1, Ordering::Relaxed);
+            let Some(&(seed, cause)) = self.wanted.get(number) else {
+                break;
+            };
+            let skipped = |kept: &Kept| kept.of(cause.name).any(|(_, o)| o.skipped.is_some());
+            if skipped(self.lock().0) {
+                continue;
+            }
+            let taken = self.cores.take(cause.cores);
+            let outcome = inject(programs, cause, seed, number + 1);
+            self.cores.give_back(taken);
+            let outcome = outcome?;
+            self.tell(seed, cause, &outcome);
+            self.lock().0.add(cause.name, seed, outcome)?;
+        }
+        Ok(())
+    }
+
+    fn lock(&self) -> MutexGuard<'_, (&'a mut Kept, usize)> {
+        self.kept.lock().expect("nobody panics holding what is kept")
+    }
+
+    fn tell(&self, seed: u64, cause: &Cause, outcome: &Outcome) {
+        let mut kept = self.lock();
+        kept.1 += 1;
+        let (made, all) = (kept.1, self.wanted.len());
+        let left = self.began.elapsed().as_secs_f64() / made as f64 * all.saturating_sub(made) as f64;
+        let result = if outcome.broken.is_empty() {
+            "as specified"
+        } else {
+            "NOT AS SPECIFIED"
+        };
+        eprintln!(
+            "{made:6} of {all}, {}:{:02} left  {:17} --seed {seed}: {result}",
+            left as u64 / 60,
+            left as u64 % 60,
+            cause.name
+        );
+        for broken in &outcome.broken {
+            eprintln!("{} --seed {seed}: {broken}", cause.name);
+        }
+    }
+}
+
 /// Injects `cause` once, the `number`-th of a run.
 ///
 /// # Errors
 /// When no process can be started at all.
-pub(crate) fn inject(
-    programs: &Programs,
-    cause: &Cause,
-    seed: u64,
-    number: usize,
-) -> Result<Outcome, String> {
+fn inject(programs: &Programs, cause: &Cause, seed: u64, number: usize) -> Result<Outcome, String> {
     let stage = Stage::new(&format!("faults{}n{number}", std::process::id()))?;
     if cause.own_memory && !can_unshare() {
         return Ok(Outcome {
