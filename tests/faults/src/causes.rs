@@ -4,11 +4,10 @@
 
 use rustix::process::Signal;
 
-use crate::inside::Break;
 use crate::outcome::Expected;
 use crate::rogue::Behaviour;
 use crate::trial::Trial;
-use crate::{host, layers, lives};
+use crate::{host, layers, lives, stepped};
 
 /// A fault.
 pub(crate) struct Cause {
@@ -22,7 +21,7 @@ pub(crate) struct Cause {
     pub(crate) bound: &'static str,
     /// Whether it needs shared memory of its own.
     pub(crate) own_memory: bool,
-    /// Cores that real-time threads of it keep busy; two where one of them never returns, so that another is free.
+    /// Cores that a real-time thread of it keeps busy: none or one.
     pub(crate) cores: usize,
     /// Injects it once.
     pub(crate) inject: fn(&mut Trial) -> Result<(), String>,
@@ -54,8 +53,8 @@ const fn halts(name: &'static str, about: &'static str, bound: &'static str, inj
     }
 }
 
-const fn keeping(cores: usize, cause: Cause) -> Cause {
-    Cause { cores, ..cause }
+const fn keeping_a_core(cause: Cause) -> Cause {
+    Cause { cores: 1, ..cause }
 }
 
 const APART: &str = "the body's stale limit + 1 period";
@@ -127,72 +126,56 @@ pub(crate) static CAUSES: &[Cause] = &[
         "the body's stale limit + 2 periods",
         lives::panics_inside,
     ),
-    keeping(
-        2,
-        halts(
-            "inside-loop",
-            "a vital layer inside the daemon never returns",
-            "50 ms of silence + 2 periods",
-            |t| lives::breaks_inside(t, Break::Loop, "vital layer late", lives::VITAL_LATE),
-        ),
-    ),
-    keeping(
-        1,
-        halts(
-            "inside-overrun",
-            "a layer with `overrun = \"halt\"` overruns",
-            "2 of its periods + 2 periods",
-            |t| lives::breaks_inside(t, Break::Overrun, "overrun", lives::OVERRUN_LATE),
-        ),
-    ),
-    keeping(
-        1,
-        goes_on(
-            "inside-skip",
-            "a layer with `overrun = \"skip\"` overruns",
-            lives::skips_inside,
-        ),
-    ),
-    keeping(
-        1,
-        halts(
-            "body-kill",
-            "the body's process dies, another comes",
-            "the pulse's stale limit + 2 periods",
-            |t| lives::body_lost(t, Signal::KILL),
-        ),
-    ),
-    keeping(
-        1,
-        halts(
-            "body-stop",
-            "the body's process freezes and thaws",
-            "the pulse's stale limit + 2 periods",
-            |t| lives::body_lost(t, Signal::STOP),
-        ),
-    ),
-    keeping(
-        1,
-        halts(
-            "emergency-stop",
-            "an operator's emergency stop",
-            "2 periods + 1 until the caller is heard",
-            lives::emergency_stop,
-        ),
-    ),
-    keeping(
-        1,
-        halts(
-            "sigterm",
-            "SIGTERM in the middle of a long step",
-            "20 ms + 2 periods",
-            lives::ends_in_mid_step,
-        ),
-    ),
+    keeping_a_core(halts(
+        "inside-loop",
+        "a vital layer inside the daemon never returns",
+        "50 ms of silence + 2 periods",
+        lives::loops_inside,
+    )),
+    keeping_a_core(halts(
+        "inside-overrun",
+        "a layer with `overrun = \"halt\"` overruns",
+        "2 of its periods + 2 periods",
+        lives::overruns_inside,
+    )),
+    keeping_a_core(goes_on(
+        "inside-skip",
+        "a layer with `overrun = \"skip\"` overruns",
+        lives::skips_inside,
+    )),
+    keeping_a_core(halts(
+        "body-kill",
+        "the body's process dies, another comes",
+        "the pulse's stale limit + 2 periods",
+        |t| lives::body_lost(t, Signal::KILL),
+    )),
+    keeping_a_core(halts(
+        "body-stop",
+        "the body's process freezes and thaws",
+        "the pulse's stale limit + 2 periods",
+        |t| lives::body_lost(t, Signal::STOP),
+    )),
+    keeping_a_core(halts(
+        "emergency-stop",
+        "an operator's emergency stop",
+        "2 periods + 1 until the caller is heard",
+        lives::emergency_stop,
+    )),
+    keeping_a_core(halts(
+        "sigterm",
+        "SIGTERM in the middle of a long step",
+        "20 ms + 2 periods",
+        lives::ends_in_mid_step,
+    )),
     goes_on(
         "second-daemon",
         "a second daemon of the same name",
         host::second_daemon,
+    ),
+    goes_on(
+        "clock-step",
+        "the realtime clock is stepped ten times a second",
+        stepped::clock_stepped,
     ),
     goes_on(
         "descriptors",

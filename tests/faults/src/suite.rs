@@ -1,10 +1,10 @@
-//! The suite: every injection in a process of its own, on a stage of its own; then a look at what it left behind.
+//! The suite: every trial in a process of its own, on a stage of its own; then a look at what it left behind.
 //!
 //! ```text
 //!   suite ── stage ──► `faults inject CAUSE` ──► daemon, body, layers ──► outcome, one line of JSON
 //!         ◄── what is left in shared memory, in iceoryx2's directory, in the run directory ── nothing
 //! ```
-//! Must never run two injections at once that take a core to themselves: nothing would be left to halt them. Others
+//! Must never run two trials at once that take a core to themselves: nothing would be left to halt them. Others
 //! may run side by side, as each other's load.
 
 use std::os::unix::process::CommandExt;
@@ -21,23 +21,32 @@ use crate::kept::Kept;
 use crate::outcome::Outcome;
 use crate::programs::Programs;
 
-/// How long an injection may take in all before it is given up as hanging.
-const INJECTION_MAX: Duration = Duration::from_secs(150);
+/// How long a trial may take in all before it is given up as hanging, and so much more for every round.
+const TRIAL_MAX: Duration = Duration::from_secs(150);
+const ROUND_MAX: Duration = Duration::from_secs(10);
 
 /// How long dead and leaving processes may take to be gone from the stage.
 const GONE_MAX: Duration = Duration::from_secs(3);
 
-/// Size of the shared memory of an injection that fills it.
+/// Size of the shared memory of a trial that fills it.
 const OWN_MEMORY: &str = "4m";
 
-/// Makes all of these injections, `jobs` at once, and keeps what came of each as soon as it is known.
+/// How trials are made.
+pub(crate) struct Plan {
+    /// Injections of each.
+    pub(crate) rounds: u64,
+    /// How many run at once.
+    pub(crate) jobs: usize,
+}
+
+/// Makes all of these trials, and keeps what came of each as soon as it is known.
 ///
 /// # Errors
 /// When no process can be started at all, or nothing kept.
 pub(crate) fn inject_all(
     programs: &Programs,
     wanted: Vec<(u64, &'static Cause)>,
-    jobs: usize,
+    plan: &Plan,
     kept: &mut Kept,
 ) -> Result<(), String> {
     let queue = Queue {
@@ -47,17 +56,20 @@ pub(crate) fn inject_all(
         cores: Cores::of_the_host(),
         kept: Mutex::new((kept, 0)),
         wanted,
+        rounds: plan.rounds,
     };
     std::thread::scope(|scope| {
-        let workers: Vec<_> = (0..jobs).map(|_| scope.spawn(|| queue.work(programs))).collect();
+        let workers: Vec<_> = (0..plan.jobs)
+            .map(|_| scope.spawn(|| queue.work(programs)))
+            .collect();
         let ended = workers.into_iter().map(|worker| worker.join());
         ended
-            .map(|result| result.unwrap_or_else(|_| Err("an injection's thread panicked".into())))
+            .map(|result| result.unwrap_or_else(|_| Err("a trial's thread panicked".into())))
             .collect()
     })
 }
 
-/// Cores that real-time threads of injections may keep busy.
+/// Cores that real-time threads of trials may keep busy: all but one, on which everybody else's threads run.
 struct Cores {
     all: usize,
     free: Mutex<usize>,
@@ -66,7 +78,8 @@ struct Cores {
 
 impl Cores {
     fn of_the_host() -> Cores {
-        let all = std::thread::available_parallelism().map_or(1, usize::from);
+        let host = std::thread::available_parallelism().map_or(1, usize::from);
+        let all = host.saturating_sub(1).max(1);
         Cores {
             all,
             free: Mutex::new(all),
@@ -89,9 +102,10 @@ impl Cores {
     }
 }
 
-/// Injections that are still to be made, and where their outcomes go.
+/// Trials that are still to be made, and where their outcomes go.
 struct Queue<'a> {
     wanted: Vec<(u64, &'static Cause)>,
+    rounds: u64,
     next: AtomicUsize,
     interrupted: Arc<AtomicBool>,
     began: Instant,
@@ -101,7 +115,7 @@ struct Queue<'a> {
 }
 
 impl<'a> Queue<'a> {
-    /// Makes injections until none is left, or Ctrl-C.
+    /// Makes trials until none is left, or Ctrl-C.
     fn work(&self, programs: &Programs) -> Result<(), String> {
         while !self.interrupted.load(Ordering::Relaxed) {
             let number = self.next.fetch_add(1, Ordering::Relaxed);
@@ -113,7 +127,7 @@ impl<'a> Queue<'a> {
                 continue;
             }
             let taken = self.cores.take(cause.cores);
-            let outcome = inject(programs, cause, seed, number + 1);
+            let outcome = inject(programs, cause, seed, self.rounds, number + 1);
             self.cores.give_back(taken);
             let outcome = outcome?;
             self.tell(seed, cause, &outcome);
@@ -148,11 +162,17 @@ impl<'a> Queue<'a> {
     }
 }
 
-/// Injects `cause` once, the `number`-th of a run.
+/// Tries `cause` with `rounds` injections, the `number`-th trial of a run.
 ///
 /// # Errors
 /// When no process can be started at all.
-fn inject(programs: &Programs, cause: &Cause, seed: u64, number: usize) -> Result<Outcome, String> {
+fn inject(
+    programs: &Programs,
+    cause: &Cause,
+    seed: u64,
+    rounds: u64,
+    number: usize,
+) -> Result<Outcome, String> {
     let stage = Stage::new(&format!("faults{}n{number}", std::process::id()))?;
     if cause.own_memory && !can_unshare() {
         return Ok(Outcome {
@@ -171,11 +191,12 @@ fn inject(programs: &Programs, cause: &Cause, seed: u64, number: usize) -> Resul
         stage.command(&programs.ourselves)
     };
     command.args(["inject", cause.name, "--seed", &seed.to_string()]);
-    // Ctrl-C is for us: the injection under way comes to its end.
+    command.args(["--rounds", &rounds.to_string()]);
+    // Ctrl-C is for us: the trial under way comes to its end.
     command.process_group(0);
     let child = command.stdout(Stdio::piped()).spawn();
     let child = child.map_err(|e| format!("{:?} does not start: {e}", command.get_program()))?;
-    let mut outcome = finish(child);
+    let mut outcome = finish(child, TRIAL_MAX + ROUND_MAX * rounds as u32);
     let left = left_behind(&stage);
     outcome.expect(left.is_empty(), || {
         // A few say which process it was; a hundred say no more.
@@ -188,8 +209,8 @@ fn inject(programs: &Programs, cause: &Cause, seed: u64, number: usize) -> Resul
     Ok(outcome)
 }
 
-/// Waits for an injection, and reads what came of it.
-fn finish(mut child: Child) -> Outcome {
+/// Waits for a trial for as long as `limit`, and reads what came of it.
+fn finish(mut child: Child, limit: Duration) -> Outcome {
     let began = Instant::now();
     let broken = |text: String| Outcome {
         broken: vec![text],
@@ -198,11 +219,11 @@ fn finish(mut child: Child) -> Outcome {
     let status = loop {
         match child.try_wait() {
             Ok(Some(status)) => break status,
-            Ok(None) if began.elapsed() < INJECTION_MAX => std::thread::sleep(Duration::from_millis(5)),
+            Ok(None) if began.elapsed() < limit => std::thread::sleep(Duration::from_millis(5)),
             _ => {
                 let _ = child.kill();
                 let _ = child.wait();
-                return broken("the injection hangs".into());
+                return broken("the trial hangs".into());
             }
         }
     };
@@ -215,7 +236,7 @@ fn finish(mut child: Child) -> Outcome {
         .lines()
         .last()
         .and_then(|line| serde_json::from_str(line).ok());
-    said.unwrap_or_else(|| broken(format!("the injection ended with {status} and no outcome")))
+    said.unwrap_or_else(|| broken(format!("the trial ended with {status} and no outcome")))
 }
 
 /// What remains on the stage, with time for those who leave to be gone.

@@ -1,8 +1,9 @@
-//! A trial: one injection on its stage, with what the seed decides and what came of it.
+//! A trial: one fault, injected once or in several rounds on one stage, with what the seed decides and what came of it.
 //!
 //! Must never inject before the body is free: a fault that is not needed for the halt shows nothing.
 
 use ipc::clock::{self, Span, Time};
+use ipc::control::Event;
 use rustix::process::{Pid, Signal, kill_process};
 use serde_json::Value;
 use stage::{Player, Stage, wait_for};
@@ -19,8 +20,10 @@ pub(crate) const CREATURE: &str = "tried";
 /// Name of its body, where that is a process of its own.
 pub(crate) const BODY: &str = "hall";
 
-/// How long a process of a stage lives at most: it ends by itself should nobody be left to end it.
-pub(crate) const LIFE_S: &str = "180";
+/// How long a process of a stage lives at most, and as much again for every round: it ends by itself should nobody be
+/// left to end it.
+const LIFE_S: u64 = 180;
+const LIFE_MORE_S: u64 = 10;
 
 /// What of Allen's file and body a bound is made of.
 #[derive(Clone, Copy, Debug)]
@@ -31,7 +34,7 @@ pub(crate) struct Limits {
     pub(crate) stale: Span,
 }
 
-/// One injection.
+/// A trial.
 #[derive(Debug)]
 pub(crate) struct Trial {
     pub(crate) programs: Programs,
@@ -39,8 +42,12 @@ pub(crate) struct Trial {
     pub(crate) outcome: Outcome,
     pub(crate) limits: Limits,
     random: Draws,
+    /// How often the fault is injected.
+    rounds: u64,
+    /// The newest event before the round.
+    noted: u64,
     /// How long a process lives at most, in seconds.
-    life_s: String,
+    pub(crate) life_s: String,
 }
 
 impl Trial {
@@ -48,7 +55,7 @@ impl Trial {
     ///
     /// # Errors
     /// When there is none, or a program is missing.
-    pub(crate) fn new(seed: u64) -> Result<Trial, String> {
+    pub(crate) fn new(seed: u64, rounds: u64) -> Result<Trial, String> {
         let kinds = daemon::machine::kinds();
         let source = ipc::wiring::Source::new("allen.toml", allen::CREATURE);
         let creature = ipc::wiring::check::creature(&source, &kinds).map_err(|e| e.to_string())?;
@@ -63,13 +70,15 @@ impl Trial {
                 stale: kind.stale,
             },
             random: Draws(seed),
-            life_s: LIFE_S.into(),
+            rounds,
+            noted: 0,
+            life_s: (LIFE_S + rounds * LIFE_MORE_S).to_string(),
         })
     }
 
     /// The same with processes that live for `seconds` and a while.
     pub(crate) fn living(mut self, seconds: f64) -> Trial {
-        self.life_s = (seconds + 180.0).to_string();
+        self.life_s = (seconds + LIFE_S as f64).to_string();
         self
     }
 
@@ -104,10 +113,18 @@ impl Trial {
 
     /// Level 1 of Allen as a process, attached.
     pub(crate) fn wander(&self) -> Result<Player, String> {
+        self.wander_with(&[])
+    }
+
+    /// The same with further variables.
+    pub(crate) fn wander_with(&self, variables: &[(&str, &str)]) -> Result<Player, String> {
+        let arguments = ["--creature", CREATURE];
         let wander = self
             .stage
-            .start(&self.programs.wander, &["--creature", CREATURE])?;
-        wait_for("wander is attached", || self.stage.has_layer(CREATURE, "wander"))
+            .start_with(&self.programs.wander, &arguments, variables)?;
+        // Its own coming: the status may still show one before it.
+        let attached = format!("layer wander (pid {}) attached", wander.pid());
+        wait_for(&attached, || self.stage.happened(CREATURE, &[&attached]))
             .map_err(|e| format!("{e}; it said {:?}", wander.said()))?;
         Ok(wander)
     }
@@ -135,11 +152,22 @@ impl Trial {
         })
     }
 
+    /// Runs `round` as often as the fault is to be injected.
+    pub(crate) fn in_rounds(
+        &mut self,
+        mut round: impl FnMut(&mut Trial) -> Result<(), String>,
+    ) -> Result<(), String> {
+        (0..self.rounds).try_for_each(|_| {
+            self.outcome.injections += 1;
+            round(self)
+        })
+    }
+
     /// Tries a fault that must not halt the body: the daemon goes on. The body is a process of its own, whose
     /// world turns in real time: one inside the daemon is an ordinary thread, and lost when the host is busy.
     pub(crate) fn goes_on(
         &mut self,
-        fault: impl FnOnce(&mut Trial) -> Result<(), String>,
+        fault: impl FnMut(&mut Trial) -> Result<(), String>,
     ) -> Result<(), String> {
         let mut body = self.body()?;
         let daemon = self.daemon(&["--body", BODY])?;
@@ -155,19 +183,20 @@ impl Trial {
     pub(crate) fn goes_on_with(
         &mut self,
         mut daemon: Player,
-        fault: impl FnOnce(&mut Trial) -> Result<(), String>,
+        mut fault: impl FnMut(&mut Trial) -> Result<(), String>,
     ) -> Result<(), String> {
         let observer = Observer::of_the_host()?;
-        self.wait_a_while();
         let before = self.stage.status(CREATURE);
-        fault(self).map_err(|e| {
-            let said = daemon.said();
-            format!("{e}; the daemon last said {:?}", said.last())
-        })?;
+        let tried = self.in_rounds(|trial| {
+            trial.wait_a_while();
+            trial.noted = trial.stage.events(CREATURE).last().map_or(0, |e| e.number);
+            fault(trial)
+        });
+        tried.map_err(|e| format!("{e}; the daemon last said {:?}", daemon.said().last()))?;
         // Two looks of the daemon's own watcher: what the fault did is in its status.
         clock::sleep_until(clock::monotonic() + Span::millis(250));
         let after = self.stage.status(CREATURE);
-        self.outcome.host_late = observer.late();
+        self.outcome.host_late = self.outcome.host_late.max(observer.late());
         self.outcome.inspect(&after);
         self.outcome.expect_no_halt(&before, &after);
         let (was, is) = (beats_of_level_0(&before), beats_of_level_0(&after));
@@ -181,6 +210,15 @@ impl Trial {
         self.end(&mut daemon)
     }
 
+    /// Waits until an event of this round holds all of `parts`.
+    pub(crate) fn told(&self, parts: &[&str]) -> Result<(), String> {
+        let holds =
+            |event: &Event| event.number > self.noted && parts.iter().all(|part| event.text.contains(part));
+        wait_for(&format!("an event says {parts:?}"), || {
+            self.stage.events(CREATURE).iter().any(holds)
+        })
+    }
+
     /// Ends a daemon in good order.
     pub(crate) fn end(&mut self, daemon: &mut Player) -> Result<(), String> {
         if let Err(trouble) = daemon.leave() {
@@ -189,23 +227,30 @@ impl Trial {
         Ok(())
     }
 
-    /// Notes the time from `fault` to `halted`, which may take `bound`.
-    pub(crate) fn halted(&mut self, fault: Time, halted: Option<Time>, bound: Span) {
-        self.outcome.halted = halted.map(|at| at.since(fault));
-        self.outcome.bound = Some(bound);
+    /// Notes the time from `fault` to `halted`, which may take `bound`, while `observer` looked on.
+    pub(crate) fn halted(&mut self, fault: Time, halted: Option<Time>, bound: Span, observer: &Observer) {
         self.outcome.period = Some(self.limits.period);
+        let halted = halted.map(|at| at.since(fault));
+        self.outcome.halted(halted, bound, observer.late());
     }
 
     /// Starts the daemon again after a death, with the body process that saw it, and looks whether all is well.
-    pub(crate) fn restart(&mut self) -> Result<(), String> {
+    pub(crate) fn restart(&mut self) -> Result<Player, String> {
         let began = clock::monotonic();
-        let mut daemon = self.daemon(&["--body", BODY])?;
-        self.outcome.restart = Some(clock::monotonic().since(began));
+        let daemon = self.daemon(&["--body", BODY])?;
+        let took = clock::monotonic().since(began);
+        self.outcome.restart = self.outcome.restart.max(Some(took));
+        self.look_at_status()?;
+        Ok(daemon)
+    }
+
+    /// Takes in what the daemon's status says, as soon as the body tells how it looks.
+    pub(crate) fn look_at_status(&mut self) -> Result<(), String> {
         wait_for("the body tells how it looks", || {
             self.stage.status(CREATURE)["contacts"].is_object()
         })?;
         self.outcome.inspect(&self.stage.status(CREATURE));
-        self.end(&mut daemon)
+        Ok(())
     }
 
     /// The daemon that answers.
