@@ -50,8 +50,8 @@ impl Door {
         }
         if self.callers.len() >= CALLERS_MAX {
             self.callers.make_room(clock::monotonic());
-            // Its thread leaves within a blink; should it not, this caller has to come again.
-            for _ in 0..20 {
+            // Its thread leaves within a blink, or a few on a busy host; should it not, this caller has to come again.
+            for _ in 0..500 {
                 if self.callers.len() < CALLERS_MAX {
                     break;
                 }

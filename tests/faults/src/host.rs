@@ -34,11 +34,14 @@ pub(crate) fn second_daemon(trial: &mut Trial) -> Result<(), String> {
 /// Callers take every file descriptor that the daemon may have.
 pub(crate) fn descriptors_used_up(trial: &mut Trial) -> Result<(), String> {
     let life_s = &trial.life_s;
-    let script =
-        format!("ulimit -n {DESCRIPTORS}; exec \"$0\" --name {CREATURE} --headless --seconds {life_s}");
+    let script = format!(
+        "ulimit -n {DESCRIPTORS}; exec \"$0\" --name {CREATURE} --headless --body {BODY} --seconds {life_s}"
+    );
     let program = trial.programs.subsumed.to_string_lossy().into_owned();
+    let mut body = trial.body()?;
     let daemon = trial.stage.start("sh", &["-c", &script, &program])?;
     trial.wait_until_free(&daemon)?;
+    trial.look_at_status()?;
     trial.goes_on_with(daemon, |trial| {
         let callers: Vec<UnixStream> = (0..200)
             .map_while(|_| UnixStream::connect(trial.stage.socket(CREATURE)).ok())
@@ -51,7 +54,9 @@ pub(crate) fn descriptors_used_up(trial: &mut Trial) -> Result<(), String> {
         // The places come free again, and a layer finds one.
         trial.wait_until_answered()?;
         trial.wander()?.leave()
-    })
+    })?;
+    leave_body(trial, &mut body);
+    Ok(())
 }
 
 /// Callers that come while the daemon is at its limit: each is a conversation that it has to find room for.
@@ -185,8 +190,10 @@ pub(crate) fn memory_full(trial: &mut Trial) -> Result<(), String> {
                 layer.said()
             )
         });
-        // Long enough for everybody to have wanted to clean up after the dead.
-        std::thread::sleep(Duration::from_millis(2500));
+        if trial.outcome.injections == 1 {
+            // Long enough for everybody to have wanted to clean up after the dead.
+            std::thread::sleep(Duration::from_millis(2500));
+        }
         std::fs::remove_file(ballast).map_err(|e| format!("{}: {e}", ballast.display()))?;
         trial.wander()?.leave()
     })

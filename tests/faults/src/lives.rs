@@ -22,7 +22,7 @@ pub(crate) fn daemon_dies(trial: &mut Trial, signal: Signal) -> Result<(), Strin
     let mut daemon = trial.daemon(&["--body", BODY])?;
     trial.in_rounds(|trial| {
         let (observer, fault) = at_a_free_moment(trial)?;
-        daemon.signal(signal);
+        observer.while_breaking(fault, || daemon.signal(signal));
         body_halts(trial, &observer, fault);
         daemon.end()?;
         drop(observer);
@@ -40,7 +40,7 @@ pub(crate) fn daemon_freezes(trial: &mut Trial) -> Result<(), String> {
     let mut daemon = trial.daemon(&["--body", BODY])?;
     trial.in_rounds(|trial| {
         let (observer, fault) = at_a_free_moment(trial)?;
-        daemon.signal(Signal::STOP);
+        observer.while_breaking(fault, || daemon.signal(Signal::STOP));
         body_halts(trial, &observer, fault);
         daemon.signal(Signal::CONT);
         wait_for("the body is free after the thaw", || observer.is_open())?;
@@ -59,7 +59,7 @@ pub(crate) fn body_lost(trial: &mut Trial, signal: Signal) -> Result<(), String>
     let mut daemon = on_trial(trial, Break::Busy)?;
     trial.in_rounds(|trial| {
         let (observer, fault) = at_a_free_moment(trial)?;
-        body.signal(signal);
+        observer.while_breaking(fault, || body.signal(signal));
         let bound = Span(trial.limits.stale.0 + 2 * trial.limits.period.0);
         halts(trial, &daemon, "body lost", fault, bound, &observer);
         drop(observer);
@@ -183,7 +183,7 @@ pub(crate) fn ends_in_mid_step(trial: &mut Trial) -> Result<(), String> {
     trial.in_rounds(|trial| {
         let mut daemon = on_trial(trial, Break::Busy)?;
         let (observer, fault) = at_a_free_moment(trial)?;
-        daemon.signal(Signal::TERM);
+        observer.while_breaking(fault, || daemon.signal(Signal::TERM));
         // The signal is looked for as often as once a period.
         let bound = Span(3 * trial.limits.period.0);
         halts(trial, &daemon, "shutdown", fault, bound, &observer);
@@ -213,7 +213,8 @@ pub(crate) fn emergency_stop(trial: &mut Trial) -> Result<(), String> {
             .connect(CREATURE)
             .ok_or("the daemon does not answer")?;
         let (observer, fault) = at_a_free_moment(trial)?;
-        let answer = connection.ask(&Request::Halt).map_err(|e| e.to_string())?;
+        let answer = observer.while_breaking(fault, || connection.ask(&Request::Halt));
+        let answer = answer.map_err(|e| e.to_string())?;
         trial.outcome.expect(answer == Reply::Done, || {
             format!("a halt was answered with {answer:?}")
         });

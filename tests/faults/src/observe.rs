@@ -88,6 +88,14 @@ impl Observer {
         self.seen.late.store(0, Ordering::Relaxed);
     }
 
+    /// Breaks something, not before `fault`. The host may hold up who does: when the fault came is known to within that.
+    pub(crate) fn while_breaking<T>(&self, fault: Time, act: impl FnOnce() -> T) -> T {
+        let done = act();
+        let took = clock::monotonic().since(fault);
+        self.seen.late.fetch_max(took.0, Ordering::Relaxed);
+        done
+    }
+
     /// Its longest lateness since [`begin`](Observer::begin).
     pub(crate) fn late(&self) -> Span {
         Span(self.seen.late.load(Ordering::Relaxed))

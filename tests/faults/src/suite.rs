@@ -11,6 +11,7 @@ use std::os::unix::process::CommandExt;
 use std::process::{Child, Command, Stdio};
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard};
+use std::thread::ScopedJoinHandle;
 use std::time::{Duration, Instant};
 
 use signal_hook::consts::SIGINT;
@@ -62,10 +63,9 @@ pub(crate) fn inject_all(
         let workers: Vec<_> = (0..plan.jobs)
             .map(|_| scope.spawn(|| queue.work(programs)))
             .collect();
-        let ended = workers.into_iter().map(|worker| worker.join());
-        ended
-            .map(|result| result.unwrap_or_else(|_| Err("a trial's thread panicked".into())))
-            .collect()
+        let ended = |worker: ScopedJoinHandle<'_, _>| worker.join();
+        let mut ended = workers.into_iter().map(ended);
+        ended.try_for_each(|result| result.unwrap_or_else(|_| Err("a trial's thread panicked".into())))
     })
 }
 
