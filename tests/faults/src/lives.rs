@@ -266,7 +266,7 @@ fn reset(trial: &Trial, daemon: &Player) -> Result<(), String> {
 
 /// An observer, and a moment at which the body's own gate is open.
 pub(crate) fn at_a_free_moment(trial: &mut Trial) -> Result<(Observer, Time), String> {
-    let observer = Observer::of_the_body()?;
+    let observer = Observer::of_the_body(trial.limits.period)?;
     trial.wait_a_while();
     wait_for("the body's own gate is open", || observer.is_open())?;
     observer.begin();
