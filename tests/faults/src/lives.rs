@@ -40,7 +40,7 @@ pub(crate) fn daemon_freezes(trial: &mut Trial) -> Result<(), String> {
     let mut daemon = trial.daemon(&["--body", BODY])?;
     trial.in_rounds(|trial| {
         let (observer, fault) = at_a_free_moment(trial)?;
-        observer.while_breaking(fault, || daemon.signal(Signal::STOP));
+        observer.while_breaking(fault, || daemon.freeze())?;
         body_halts(trial, &observer, fault);
         daemon.signal(Signal::CONT);
         wait_for("the body is free after the thaw", || observer.is_open())?;
@@ -59,7 +59,13 @@ pub(crate) fn body_lost(trial: &mut Trial, signal: Signal) -> Result<(), String>
     let mut daemon = on_trial(trial, Break::Busy)?;
     trial.in_rounds(|trial| {
         let (observer, fault) = at_a_free_moment(trial)?;
-        observer.while_breaking(fault, || body.signal(signal));
+        observer.while_breaking(fault, || match signal {
+            Signal::STOP => body.freeze(),
+            _ => {
+                body.signal(signal);
+                Ok(())
+            }
+        })?;
         let bound = Span(trial.limits.stale.0 + 2 * trial.limits.period.0);
         halts(trial, &daemon, "body lost", fault, bound, &observer);
         drop(observer);
@@ -160,10 +166,15 @@ pub(crate) fn panics_inside(trial: &mut Trial) -> Result<(), String> {
         let mut daemon = on_trial(trial, Break::Panic)?;
         let (observer, _) = at_a_free_moment(trial)?;
         let fault = broken(&daemon)?;
-        let closed = body_closes(&observer, fault);
         let status = daemon.end()?;
-        // Until the message is written the daemon lives, with its gate closed: commands of zero, which are fresh.
+        let ended = clock::monotonic();
+        let closed = body_closes(&observer, fault);
+        // Until the message is written the daemon lives, with its gate closed: commands of zero, which are fresh. Where
+        // it does not come to say when that gate closed, what it lived on for is added to the bound.
         let told = closed_for(&daemon, "panic", fault);
+        if told.is_none() {
+            observer.held_up(ended.since(fault));
+        }
         let bound = trial.limits.stale + trial.limits.period + trial.limits.period;
         trial.halted(fault, told.into_iter().chain(closed).min(), bound, &observer);
         trial

@@ -92,9 +92,13 @@ impl Observer {
     /// Breaks something, not before `fault`. The host may hold up who does: when the fault came is known to within that.
     pub(crate) fn while_breaking<T>(&self, fault: Time, act: impl FnOnce() -> T) -> T {
         let done = act();
-        let took = clock::monotonic().since(fault);
-        self.seen.late.fetch_max(took.0, Ordering::Relaxed);
+        self.held_up(clock::monotonic().since(fault));
         done
+    }
+
+    /// Takes in what else the host was seen to hold up.
+    pub(crate) fn held_up(&self, by: Span) {
+        self.seen.late.fetch_max(by.0, Ordering::Relaxed);
     }
 
     /// Its longest lateness since [`begin`](Observer::begin).

@@ -8,7 +8,7 @@ use std::sync::{Arc, Mutex};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
-use rustix::process::{Pid, Signal, kill_process};
+use rustix::process::{Pid, Signal, WaitId, WaitIdOptions, kill_process, waitid};
 
 use crate::wait_for;
 
@@ -56,6 +56,25 @@ impl Player {
     /// Sends it a signal.
     pub fn signal(&self, signal: Signal) {
         let _ = kill_process(Pid::from_child(&self.child), signal);
+    }
+
+    /// Freezes it by SIGSTOP, and waits until all of it stands: the first of its threads to hear of it stops the others,
+    /// and on a busy host that one may have to wait for its turn.
+    ///
+    /// # Errors
+    /// When it does not stop.
+    pub fn freeze(&self) -> Result<(), String> {
+        self.signal(Signal::STOP);
+        let pid = Pid::from_child(&self.child);
+        let looked = WaitIdOptions::STOPPED | WaitIdOptions::NOHANG | WaitIdOptions::NOWAIT;
+        let began = Instant::now();
+        while !matches!(waitid(WaitId::Pid(pid), looked), Ok(Some(_))) {
+            if began.elapsed() > crate::PATIENCE {
+                return Err("given up waiting until the process stands".into());
+            }
+            std::thread::sleep(Duration::from_micros(200));
+        }
+        Ok(())
     }
 
     /// Sends `signal`, which ends it, and waits for the end.
