@@ -5,7 +5,6 @@
 use ipc::clock::{self, Span, Time};
 use ipc::control::{Reply, Request};
 use rustix::process::Signal;
-use serde_json::Value;
 use stage::{Player, wait_for};
 
 use crate::inside::{self, Break};
@@ -93,8 +92,9 @@ pub(crate) fn overruns_inside(trial: &mut Trial) -> Result<(), String> {
         let bound = Span(2 * inside::PERIOD.0 + 2 * trial.limits.period.0);
         halts(trial, &daemon, "overrun", fault, bound, &observer);
         drop(observer);
-        // An overrun latches.
-        reset(trial, &daemon)
+        // An overrun latches, and the beat after one may come late for its sake: nobody resets sooner than that.
+        clock::sleep_until(clock::monotonic() + Span(4 * inside::PERIOD.0));
+        trial.reset(&daemon)
     })?;
     trial.look_at_status()?;
     trial.end(&mut daemon)?;
@@ -233,7 +233,7 @@ pub(crate) fn emergency_stop(trial: &mut Trial) -> Result<(), String> {
         let bound = Span(3 * trial.limits.period.0);
         halts(trial, &daemon, "emergency stop", fault, bound, &observer);
         drop(observer);
-        reset(trial, &daemon)
+        trial.reset(&daemon)
     })?;
     trial.look_at_status()?;
     trial.end(&mut daemon)?;
@@ -245,34 +245,11 @@ pub(crate) fn emergency_stop(trial: &mut Trial) -> Result<(), String> {
 fn on_trial(trial: &mut Trial, how: Break) -> Result<Player, String> {
     let arguments = ["inside", how.name(), "--seconds", &trial.life_s];
     let daemon = trial.stage.start(&trial.programs.ourselves, &arguments)?;
-    wait_for("the body is free or halted for good", || {
-        trial.stage.is_free(CREATURE) || is_latched(trial)
-    })
-    .map_err(|e| format!("{e}; the daemon said {:?}", daemon.said()))?;
-    if is_latched(trial) {
-        blame_the_host(trial);
-        reset(trial, &daemon)?;
-    }
+    trial.wait_until_free(&daemon)?;
     wait_for("the body tells how it looks", || {
         trial.stage.status(CREATURE)["contacts"].is_object()
     })?;
     Ok(daemon)
-}
-
-fn is_latched(trial: &Trial) -> bool {
-    trial.stage.status(CREATURE)["halt"]["latched"] == true
-}
-
-/// Takes back a halt that latched.
-fn reset(trial: &Trial, daemon: &Player) -> Result<(), String> {
-    let mut answer = None;
-    // Refused for as long as the cause stands.
-    wait_for("a reset is granted", || {
-        answer = trial.stage.ask(CREATURE, &Request::Reset);
-        answer == Some(Reply::Done)
-    })
-    .map_err(|e| format!("{e}: {answer:?}"))?;
-    trial.wait_until_free(daemon)
 }
 
 /// An observer, and a moment at which the body's own gate is open.
@@ -295,34 +272,16 @@ fn broken_before_halted(
     loop {
         let (observer, began) = at_a_free_moment(trial)?;
         // What it told before is of earlier rounds, unless it stands.
-        let since = if is_latched(trial) { Time(0) } else { began };
+        let since = if trial.is_latched() { Time(0) } else { began };
         let fault = broken(daemon)?;
         if closed_for(daemon, cause, since).is_none_or(|at| at >= fault) {
             return Ok((observer, fault));
         }
-        blame_the_host(trial);
+        trial.blame_the_host();
         daemon.signal(Signal::KILL);
         daemon.end()?;
         *daemon = on_trial(trial, how)?;
     }
-}
-
-/// Counts a halt that latched before anything broke as the host's, if that is what it was: some thread was held up for
-/// half a period of the layer on trial.
-fn blame_the_host(trial: &mut Trial) {
-    let status = trial.stage.status(CREATURE);
-    let layers = status["layers"].as_array().into_iter().flatten();
-    // How long the step on trial lasted, the fault decides.
-    let times = layers.flat_map(|l| {
-        let step = (l["name"] != "trial").then_some(&l["step_us"]["max"]);
-        step.into_iter().chain([&l["latency_us"]["max"]])
-    });
-    let longest_us = times.filter_map(Value::as_f64).fold(0.0, f64::max);
-    let held_up = longest_us * 1e3 > inside::PERIOD.0 as f64 / 2.0;
-    trial.outcome.host_halts += u64::from(held_up);
-    trial.outcome.expect(held_up, || {
-        format!("the body was halted before the fault: {}", status["halt"])
-    });
 }
 
 /// Breaks the module on trial; when it broke, by its own word.

@@ -3,12 +3,13 @@
 //! Must never inject before the body is free: a fault that is not needed for the halt shows nothing.
 
 use ipc::clock::{self, Span, Time};
-use ipc::control::Event;
+use ipc::control::{Event, Reply, Request};
 use rustix::process::{Pid, Signal, kill_process};
 use serde_json::Value;
 use stage::{Player, Stage, wait_for};
 
 use crate::draws::Draws;
+use crate::inside;
 use crate::observe::Observer;
 use crate::outcome::Outcome;
 use crate::programs::Programs;
@@ -94,7 +95,7 @@ impl Trial {
     }
 
     /// The daemon, its body free.
-    pub(crate) fn daemon(&self, arguments: &[&str]) -> Result<Player, String> {
+    pub(crate) fn daemon(&mut self, arguments: &[&str]) -> Result<Player, String> {
         let mut all = vec!["--name", CREATURE, "--headless", "--seconds", &self.life_s];
         all.extend(arguments);
         let player = self.stage.start(&self.programs.subsumed, &all)?;
@@ -134,12 +135,57 @@ impl Trial {
         self.stage.start(&self.programs.ourselves, &arguments)
     }
 
-    /// Waits until the daemon answers and its body is free.
-    pub(crate) fn wait_until_free(&self, daemon: &Player) -> Result<(), String> {
-        wait_for("the body is free", || self.stage.is_free(CREATURE)).map_err(|e| {
+    /// Waits until the daemon answers and its body is free. A halt that the host caused and that latched is taken back.
+    pub(crate) fn wait_until_free(&mut self, daemon: &Player) -> Result<(), String> {
+        let waited = wait_for("the body is free, or halted for good", || {
+            self.stage.is_free(CREATURE) || self.is_latched()
+        });
+        waited.map_err(|e| {
             let halt = self.stage.status(CREATURE)["halt"].to_string();
             format!("{e}; it stands {halt}, the daemon said {:?}", daemon.said())
+        })?;
+        if !self.is_latched() {
+            return Ok(());
+        }
+        self.blame_the_host();
+        self.reset(daemon)
+    }
+
+    /// Whether the body is halted for a cause that latches.
+    pub(crate) fn is_latched(&self) -> bool {
+        self.stage.status(CREATURE)["halt"]["latched"] == true
+    }
+
+    /// Takes back a halt that latched.
+    pub(crate) fn reset(&mut self, daemon: &Player) -> Result<(), String> {
+        let mut answer = None;
+        // Refused for as long as the cause stands.
+        wait_for("a reset is granted", || {
+            answer = self.stage.ask(CREATURE, &Request::Reset);
+            answer == Some(Reply::Done)
         })
+        .map_err(|e| format!("{e}: {answer:?}"))?;
+        // It takes effect with the motor unit's next beat.
+        wait_for("the reset takes effect", || !self.is_latched())?;
+        self.wait_until_free(daemon)
+    }
+
+    /// Counts a halt that latched without a fault as the host's, if that is what it was: some thread was held up for
+    /// half a period of the layer on trial.
+    pub(crate) fn blame_the_host(&mut self) {
+        let status = self.stage.status(CREATURE);
+        let layers = status["layers"].as_array().into_iter().flatten();
+        // How long the step on trial lasted, the fault decides.
+        let times = layers.flat_map(|l| {
+            let step = (l["name"] != "trial").then_some(&l["step_us"]["max"]);
+            step.into_iter().chain([&l["latency_us"]["max"]])
+        });
+        let longest_us = times.filter_map(Value::as_f64).fold(0.0, f64::max);
+        let held_up = longest_us * 1e3 > inside::PERIOD.0 as f64 / 2.0;
+        self.outcome.host_halts += u64::from(held_up);
+        self.outcome.expect(held_up, || {
+            format!("the body was halted without a fault: {}", status["halt"])
+        });
     }
 
     /// Waits until the daemon answers everybody again, twenty times in a row: those who took all places are gone, and
