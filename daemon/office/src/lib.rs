@@ -53,7 +53,8 @@ pub use config::{
 pub use contacts::{CAUSED_ABOVE_M_S, CONTACTS_KEPT_MAX, Contact, Contacts};
 pub use generator::generate;
 pub use layout::{
-    BLOCKS_MAX, Block, Door, KEPT, Kind, Layout, PLACES_MAX, Place, Room, Surface, WALL_THICKNESS_M,
+    BLOCKS_MAX, Block, Door, KEPT, Kind, LAYOUT_BYTES_MAX, Layout, PLACES_MAX, Place, Room, Surface,
+    WALL_THICKNESS_M,
 };
 pub use layout_text::LayoutError;
 pub use office::Office;
