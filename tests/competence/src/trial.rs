@@ -173,7 +173,7 @@ fn world_of(machine: &mut Machine) -> &mut OfficeWorld {
     world.expect("the body is in an office")
 }
 
-fn warehouse_of(machine: &mut Machine) -> Option<&mut WarehouseWorld> {
+pub(crate) fn warehouse_of(machine: &mut Machine) -> Option<&mut WarehouseWorld> {
     let body = machine.body.as_mut().expect("the creature has a body");
     body.world.as_any().downcast_mut::<WarehouseWorld>()
 }
@@ -265,9 +265,25 @@ impl Robot {
         self.look_at_contacts(pose);
     }
 
-    /// Notes the contacts since the last look that are the robot's doing; the office remembers the latest.
+    /// Notes the contacts since the last look that are the robot's doing; the office remembers the latest ones, the
+    /// warehouse the latest.
     fn look_at_contacts(&mut self, pose: Pose) {
-        if warehouse_of(&mut self.run.machine).is_some() {
+        if let Some(world) = warehouse_of(&mut self.run.machine) {
+            let report = world.warehouse.report();
+            let new = report.caused > std::mem::replace(&mut self.watch.touched, report.caused);
+            self.figures
+                .caused_with
+                .extend(report.latest.filter(|_| new).map(|c| {
+                    Caused {
+                        robot: 1,
+                        time_s: c.time_s,
+                        other: c
+                            .person
+                            .map_or("the floor".into(), |n| format!("person {}", n + 1)),
+                        approach_m_s: c.approach_m_s,
+                        at: (pose.x, pose.y),
+                    }
+                }));
             return;
         }
         let index = self.index;

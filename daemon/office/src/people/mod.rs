@@ -5,7 +5,8 @@
 //! attacker:  3 Chase ──close──► 4 Pester ──time──► 2 Go (away) ──arrived──► 1 Stand ──time──► 3
 //!            4 ──robot got away──► 3        3 ──no headway──► 2
 //! cornerer:  as an attacker, but 3 goes to where the robot has the nearest wall behind it, and 4 lasts
-//! talker:    1 and 2 in step with two others: three with one goal, each at an own side of it
+//! talker:    6 Join, in step with two others: three with one goal, each at an own side of it
+//!            6 ──no headway──► 2 ──arrived, or no headway──► 1 ──time──► 6
 //! scripted:  5 Straight, for ever
 //! ```
 //!
@@ -220,7 +221,12 @@ impl Person {
                 (via.map_or_else(aim, |place| around.ways.place(place)) - at).unit()
             }
             Intent::Join { goal, via } => {
-                if !headway || self.meeting(around).is_none_or(|meeting| meeting != goal) {
+                if !headway {
+                    // Gives way, as everybody does: two who would step on one point held whoever stood on it.
+                    self.go(at, around, noise);
+                    return Vec2::default();
+                }
+                if self.meeting(around).is_none_or(|meeting| meeting != goal) {
                     self.stand(around.time_s, BALKED_S, noise);
                     return Vec2::default();
                 }
