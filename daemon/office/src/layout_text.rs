@@ -37,13 +37,13 @@
 //! ```
 
 use crate::config::ROBOT_RADIUS_M;
-use crate::layout::{BLOCKS_MAX, Door, Kind, Layout, PLACES_MAX, Place, Room, Surface, WALL_THICKNESS_M};
+use crate::layout::{BLOCKS_MAX, Door, Kind, Layout, PLACES_MAX, Place, Room, WALL_THICKNESS_M};
+use crate::layout_form::{RawBlock, RawKind, RawLayout, RawLeaf, RawPlace, RawRoom, RawWall};
 use crate::plane::vec2;
 use crate::space::Space;
 use crate::ways::{WALK_RADIUS_M, Ways};
 use core::fmt;
 use core::ops::Range;
-use serde::Deserialize;
 use toml::Spanned;
 
 /// Why a layout's text was refused.
@@ -72,85 +72,6 @@ impl fmt::Display for LayoutError {
 }
 
 impl std::error::Error for LayoutError {}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct RawLayout {
-    name: String,
-    size: Spanned<[f64; 2]>,
-    start: Spanned<[f64; 3]>,
-    #[serde(default)]
-    wall: Vec<RawWall>,
-    #[serde(default)]
-    block: Vec<RawBlock>,
-    #[serde(default)]
-    leaf: Vec<RawLeaf>,
-    #[serde(default)]
-    place: Vec<RawPlace>,
-    #[serde(default)]
-    room: Vec<RawRoom>,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct RawWall {
-    name: Spanned<String>,
-    from: Spanned<[f64; 2]>,
-    to: Spanned<[f64; 2]>,
-    #[serde(default)]
-    doors: Vec<Spanned<[f64; 2]>>,
-    #[serde(default)]
-    surface: Surface,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct RawLeaf {
-    name: Spanned<String>,
-    at: Spanned<[f64; 2]>,
-    width: Spanned<f64>,
-    #[serde(default)]
-    turned: Option<Spanned<f64>>,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct RawRoom {
-    name: Spanned<String>,
-    from: Spanned<[f64; 2]>,
-    to: Spanned<[f64; 2]>,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct RawBlock {
-    name: Spanned<String>,
-    kind: RawKind,
-    at: Spanned<[f64; 2]>,
-    size: Spanned<[f64; 2]>,
-    #[serde(default)]
-    turned: Option<Spanned<f64>>,
-    #[serde(default)]
-    surface: Surface,
-}
-
-#[derive(Clone, Copy, Deserialize)]
-#[serde(rename_all = "lowercase")]
-enum RawKind {
-    Desk,
-    Table,
-    Chair,
-    Cabinet,
-    Box,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct RawPlace {
-    name: Spanned<String>,
-    at: Spanned<[f64; 2]>,
-    goal: Option<bool>,
-}
 
 /// A refusal before its bytes are turned into line and column: where, what is wrong, what to do.
 type Refusal = (Range<usize>, String, String);

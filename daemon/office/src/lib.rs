@@ -34,6 +34,7 @@ mod discs;
 mod fittings;
 mod generator;
 mod layout;
+mod layout_form;
 mod layout_text;
 mod noise;
 mod office;
