@@ -9,7 +9,7 @@ fn main() -> std::process::ExitCode {
     let path = std::path::PathBuf::from(path);
     match std::fs::read_to_string(&path) {
         Ok(text) => {
-            let manifest = ipc::wiring::Source::new(path.display().to_string(), text);
+            let manifest = ipc::wiring::Source::of_file(&path, text);
             afsm::process::run(manifest, daemon::machine::kinds())
         }
         Err(e) => {

@@ -59,7 +59,7 @@ fn load(options: &Options) -> Result<(Creature, String), String> {
                     path.display()
                 )
             })?;
-            Source::new(path.display().to_string(), text)
+            Source::of_file(path, text)
         }
     };
     let mut creature = check::creature(&source, &kinds()).map_err(|rejected| rejected.to_string())?;

@@ -108,7 +108,8 @@ fn read(path: &Path) -> Result<Source, Trouble> {
         let help = "expected the path of a creature file or a manifest (TOML)";
         Trouble::Unreadable(format!("cannot be read: {e}"), help)
     })?;
-    Source::from_bytes(path.display().to_string(), bytes).map_err(Trouble::Rejected)
+    let source = Source::from_bytes(path.display().to_string(), bytes).map_err(Trouble::Rejected)?;
+    Ok(source.beside(path))
 }
 
 /// The file at `path`: a creature file, or a manifest together with the creature it wants to join.

@@ -8,8 +8,9 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use clap::Args;
-use competence::{Order, ROWS, Row, measure, plot, row, table};
+use competence::{Order, ROWS, Row, measure, plot, row, table, trial};
 use indicatif::{ProgressBar, ProgressStyle};
+use ipc::wiring::check;
 use ipc::wiring::diagnostic::one_of;
 
 /// What to measure, and where the results go.
@@ -32,6 +33,10 @@ pub(crate) struct Asked {
     /// First seed: the trials have this one and those that follow
     #[arg(long, default_value_t = 1, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=100_000))]
     first: u64,
+    /// A floor plan to measure in (see `subsumectl new layout`), instead of the generated office of each seed;
+    /// rows of another world or with an empty room are not measured then
+    #[arg(long, value_name = "FILE")]
+    layout: Option<PathBuf>,
     /// List every contact that a robot caused: row, seed, time, with what, how fast, where
     #[arg(long)]
     contacts: bool,
@@ -92,6 +97,22 @@ pub(crate) fn compete(asked: &Asked, as_json: bool) -> ExitCode {
     }
 }
 
+/// What is wrong with measuring `rows` in the layout `file`.
+fn layout_faults(file: &Path, rows: &[&'static Row]) -> Option<String> {
+    let Some(row) = rows.first() else {
+        return Some("--layout: none of the rows asked for is in an office".into());
+    };
+    let text = row.asked(1, Some(file));
+    if let Err(rejected) = check::creature(&trial::source(&text), &trial::all_kinds()) {
+        return Some(format!("--layout: {rejected}"));
+    }
+    let crowded = rows.iter().find(|row| !trial::has_room(row, &text));
+    crowded.map(|row| {
+        let name = row.name;
+        format!("--layout: no place in it is far enough from the start for the second robot of row {name:?}")
+    })
+}
+
 fn write(path: &Path, text: &str) -> bool {
     match std::fs::write(path, text) {
         Ok(()) => true,
@@ -125,6 +146,10 @@ fn order(asked: &Asked) -> Result<Order, Vec<String>> {
     if asked.rows.is_empty() {
         rows = ROWS.iter().collect();
     }
+    if let Some(file) = &asked.layout {
+        rows.retain(|row| row.is_in_an_office());
+        wrong.extend(layout_faults(file, &rows));
+    }
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     if wrong.is_empty() {
         Ok(Order {
@@ -132,6 +157,7 @@ fn order(asked: &Asked) -> Result<Order, Vec<String>> {
             first: asked.first,
             seeds: asked.seeds,
             hours: asked.hours,
+            layout: asked.layout.clone(),
             threads: asked.threads.unwrap_or(cores).clamp(1, 256),
         })
     } else {

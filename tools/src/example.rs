@@ -37,7 +37,9 @@ pub(crate) fn of(d: &Declaration) -> String {
     }
     let _ = write!(text, "{module} = {{ kind = \"{}\"", d.name);
     for parameter in d.parameters {
-        let _ = write!(text, ", {} = {}", parameter.name, sample(&parameter.takes));
+        if let Some(value) = sample(&parameter.takes) {
+            let _ = write!(text, ", {} = {value}", parameter.name);
+        }
     }
     text.push_str(" }\n");
     text
@@ -60,9 +62,10 @@ fn source_kind(kind: Kind) -> String {
     }
 }
 
-/// A value that a parameter takes: its default, or one that shows its form.
-fn sample(takes: &Takes) -> String {
-    match takes {
+/// A value that a parameter takes: its default, or one that shows its form; none for a file, which would have to
+/// be there.
+fn sample(takes: &Takes) -> Option<String> {
+    let value = match takes {
         Takes::Number { low, high, default } => {
             format!("{:?}", default.unwrap_or(1.0_f64.clamp(*low, *high)))
         }
@@ -88,7 +91,9 @@ fn sample(takes: &Takes) -> String {
             }
             _ => "[\"10ms\", \"20ms\"]".into(),
         },
-    }
+        Takes::File { .. } => return None,
+    };
+    Some(value)
 }
 
 #[cfg(test)]

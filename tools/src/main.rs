@@ -187,7 +187,7 @@ enum Command {
     },
     /// Prints the JSON Schema of creature files, for editors
     Schema,
-    /// Writes a folder to start from: a creature, or a layer in Rust
+    /// Writes something to start from: a creature, a layer in Rust, the layout of an office
     New {
         #[command(subcommand)]
         what: new::New,

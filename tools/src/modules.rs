@@ -206,6 +206,14 @@ fn takes_json(takes: &Takes) -> Value {
             let shown = default.map(|d| d.iter().map(ToString::to_string).collect::<Vec<_>>());
             json!({"type": "times", "default": shown, "most": most, "required": default.is_none()})
         }
+        Takes::File {
+            bytes_max,
+            instead_of,
+            ..
+        } => {
+            json!({"type": "file", "default": null, "most_bytes": bytes_max, "instead_of": instead_of,
+                   "required": false})
+        }
     }
 }
 
@@ -322,6 +330,13 @@ fn takes_text(takes: &Takes) -> [String; 2] {
             let shown =
                 default.map(|d| format!("{:?}", d.iter().map(ToString::to_string).collect::<Vec<_>>()));
             [shown, Some(format!("up to {most} times"))]
+        }
+        Takes::File { instead_of, .. } => {
+            let range = match instead_of {
+                [] => "path of a file".into(),
+                others => format!("path of a file, instead of {}", others.join(" and ")),
+            };
+            [Some("none".into()), Some(range)]
         }
     };
     [default(shown), range.unwrap_or_default()]

@@ -1,4 +1,4 @@
-//! Folders to start from: a creature, or a layer that joins one.
+//! Files to start from: a creature, a layer that joins one, a layout of an office.
 //!
 //! Must never overwrite anything: a folder that is there already is left as it is.
 
@@ -19,6 +19,11 @@ pub(crate) enum New {
     /// A commented creature file with a scenario
     Creature {
         /// The creature's name, and that of the folder
+        name: String,
+    },
+    /// The floor plan of an office, commented, for `layout_file = "..."` of the body "office"
+    Layout {
+        /// The layout's name; the file is NAME.layout.toml
         name: String,
     },
     /// A layer in Rust with manifest and scenario; `cargo test` and `cargo run` work in it
@@ -46,6 +51,8 @@ const CREATURE: &[Template] = &[
     ("README.md", include_str!("../templates/creature/README.md")),
 ];
 
+const LAYOUT: &str = include_str!("../templates/layout/layout.toml");
+
 const LAYER: &[Template] = &[
     ("Cargo.toml", include_str!("../templates/layer/Cargo.toml")),
     ("@NAME@.toml", include_str!("../templates/layer/layer.toml")),
@@ -66,6 +73,7 @@ const LAYER: &[Template] = &[
 pub(crate) fn new(what: &New, as_json: bool) -> ExitCode {
     let written = match what {
         New::Creature { name } => name_of(name).and_then(|()| creature(name)),
+        New::Layout { name } => name_of(name).and_then(|()| layout(name)),
         New::Layer { name, host, crates } => {
             name_of(name).and_then(|()| layer(name, host.as_deref(), crates.as_deref()))
         }
@@ -118,6 +126,17 @@ fn creature(name: &str) -> Result<Vec<PathBuf>, String> {
     write(name, CREATURE, &[("@NAME@", name)])
 }
 
+fn layout(name: &str) -> Result<Vec<PathBuf>, String> {
+    let path = PathBuf::from(format!("{name}.layout.toml"));
+    let kept = |e: std::io::Error| match e.kind() {
+        std::io::ErrorKind::AlreadyExists => format!("{} is there already", path.display()),
+        _ => format!("{}: {e}", path.display()),
+    };
+    let mut file = std::fs::File::create_new(&path).map_err(kept)?;
+    std::io::Write::write_all(&mut file, LAYOUT.replace("@NAME@", name).as_bytes()).map_err(kept)?;
+    Ok(vec![path])
+}
+
 fn layer(name: &str, host: Option<&Path>, crates: Option<&Path>) -> Result<Vec<PathBuf>, String> {
     let source = match host {
         None => Source::new("allen.toml", allen::CREATURE),
@@ -128,7 +147,7 @@ fn layer(name: &str, host: Option<&Path>, crates: Option<&Path>) -> Result<Vec<P
                     path.display()
                 )
             })?;
-            Source::new(path.display().to_string(), text)
+            Source::of_file(path, text)
         }
     };
     let creature = checker::creature(&source, &kinds()).map_err(|rejected| rejected.to_string())?;

@@ -62,7 +62,7 @@ fn read(files: &[PathBuf], as_json: bool) -> Result<Vec<Source>, ExitCode> {
     for path in files {
         let name = path.display().to_string();
         match std::fs::read_to_string(path) {
-            Ok(text) => sources.push(Source::new(name, text)),
+            Ok(text) => sources.push(Source::of_file(path, text)),
             Err(e) => {
                 let help = "expected the path of a creature file or a layer's manifest (TOML)";
                 eprintln!("{name}: cannot be read: {e}; {help}");

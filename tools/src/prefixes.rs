@@ -23,7 +23,7 @@ pub(crate) fn prefixes(
     let load = |path: &Path| {
         let name = path.display().to_string();
         std::fs::read_to_string(path)
-            .map(|text| Source::new(&name, text))
+            .map(|text| Source::of_file(path, text))
             .map_err(|e| {
                 eprintln!("{name}: cannot be read: {e}; expected the path of a TOML file");
                 ExitCode::from(2)

@@ -7,7 +7,7 @@ use std::process::ExitCode;
 
 use daemon::machine::kinds;
 use daemon::replay::{self, Outcome};
-use ipc::wiring::{Source, check};
+use ipc::wiring::{Files, Source, check};
 use serde_json::json;
 
 /// Replays `file` through the creature in `creature`, or the recorded one.
@@ -23,7 +23,7 @@ pub(crate) fn replay(file: &Path, creature: Option<&Path>, as_json: bool) -> Exi
         Ok(recording) => recording,
         Err(message) => return bad(message),
     };
-    let source = match creature {
+    let mut source = match creature {
         None => Source::new(
             format!("creature file in {}", file.display()),
             recording.manifest.file.as_str(),
@@ -33,6 +33,8 @@ pub(crate) fn replay(file: &Path, creature: Option<&Path>, as_json: bool) -> Exi
             Err(e) => return bad(format!("{}: cannot be read: {e}", path.display())),
         },
     };
+    // The body is not built again: its sensors come from the recording, whatever files it was made from.
+    source.files = Files::Unread;
     let mut checked = match check::creature(&source, &kinds()) {
         Ok(checked) => checked,
         Err(rejected) => return bad(rejected.to_string()),

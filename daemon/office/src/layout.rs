@@ -12,6 +12,9 @@ pub const BLOCKS_MAX: usize = 1024;
 /// Most way points in one layout.
 pub const PLACES_MAX: usize = 256;
 
+/// Longest text of a layout, in bytes: [`BLOCKS_MAX`] blocks take less than half of it.
+pub const LAYOUT_BYTES_MAX: usize = 256 << 10;
+
 /// What a block is, for whoever draws it. All kinds stop the robot; what they answer depends on their surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]

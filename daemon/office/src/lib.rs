@@ -34,6 +34,7 @@ mod discs;
 mod fittings;
 mod generator;
 mod layout;
+mod layout_form;
 mod layout_text;
 mod noise;
 mod office;
@@ -53,7 +54,8 @@ pub use config::{
 pub use contacts::{CAUSED_ABOVE_M_S, CONTACTS_KEPT_MAX, Contact, Contacts};
 pub use generator::generate;
 pub use layout::{
-    BLOCKS_MAX, Block, Door, KEPT, Kind, Layout, PLACES_MAX, Place, Room, Surface, WALL_THICKNESS_M,
+    BLOCKS_MAX, Block, Door, KEPT, Kind, LAYOUT_BYTES_MAX, Layout, PLACES_MAX, Place, Room, Surface,
+    WALL_THICKNESS_M,
 };
 pub use layout_text::LayoutError;
 pub use office::Office;

@@ -27,7 +27,7 @@ fn read(options: BodyOptions) -> Result<process::Body, String> {
             let expected = "expected the path of a creature file (TOML)";
             let text = std::fs::read_to_string(path)
                 .map_err(|e| format!("{}: cannot be read: {e}; {expected}", path.display()))?;
-            Source::new(path.display().to_string(), text)
+            Source::of_file(path, text)
         }
     };
     let creature = check::creature(&source, &kinds()).map_err(|rejected| rejected.to_string())?;

@@ -11,4 +11,4 @@ mod floor;
 mod world;
 
 pub use floor::Floor;
-pub use world::{PERSON_RADIUS_M, ROBOT_RADIUS_M, Report, SONARS, Warehouse};
+pub use world::{Caused, PERSON_RADIUS_M, ROBOT_RADIUS_M, Report, SONARS, Warehouse};

@@ -44,6 +44,19 @@ pub struct Report {
     pub contacts: u64,
     /// Those towards which the robot itself moved at more than 1 cm/s.
     pub caused: u64,
+    /// The latest of those.
+    pub latest: Option<Caused>,
+}
+
+/// A contact that the robot caused.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Caused {
+    /// Since the beginning, s.
+    pub time_s: f64,
+    /// Which person, counted from 0; none for a rack, a pillar or a wall.
+    pub person: Option<usize>,
+    /// How fast the robot moved towards it, m/s.
+    pub approach_m_s: f64,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -244,7 +257,15 @@ impl Warehouse {
             self.report.contacts += 1;
             if let Some((_, (ux, uy))) = near {
                 let towards = self.moved.map(|(vx, vy)| vx * ux + vy * uy);
-                self.report.caused += u64::from(towards[0].max(towards[1]) > TOUCH.2);
+                let approach_m_s = towards[0].max(towards[1]);
+                if approach_m_s > TOUCH.2 {
+                    self.report.caused += 1;
+                    self.report.latest = Some(Caused {
+                        time_s: self.time_s,
+                        person: i.checked_sub(1),
+                        approach_m_s,
+                    });
+                }
             }
         }
     }

@@ -3,6 +3,9 @@
 //! Must never build or run a module; it only says what ports and parameters a kind has, so that wiring can
 //! be checked whole before anything starts.
 
+use std::ops::Range;
+use std::path::PathBuf;
+
 use crate::clock::Span;
 use crate::message::Kind;
 use crate::wire::Limits;
@@ -75,6 +78,28 @@ pub enum Setting {
     Numbers(Vec<f64>),
     /// Some lengths of time.
     Spans(Vec<Span>),
+    /// A text file, if one was named.
+    File(Option<Attached>),
+}
+
+/// A text file that a parameter names.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Attached {
+    /// Where it was found.
+    pub path: PathBuf,
+    /// What stood in it when the creature was checked.
+    pub text: String,
+}
+
+/// What is wrong with a text file that a parameter names.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Fault {
+    /// The offending bytes.
+    pub at: Range<usize>,
+    /// What is wrong.
+    pub message: String,
+    /// What was expected, or what to do.
+    pub help: String,
 }
 
 /// What a parameter takes, with its default.
@@ -124,6 +149,15 @@ pub enum Takes {
         /// Value when not given; must be given if `None`.
         default: Option<&'static [Span]>,
     },
+    /// The path of a text file, found from the folder of the file that names it. It may be left out.
+    File {
+        /// Most bytes in it.
+        bytes_max: usize,
+        /// All that is wrong with its text.
+        check: fn(&str) -> Vec<Fault>,
+        /// Parameters that say the same in another way: they are not given with it.
+        instead_of: &'static [&'static str],
+    },
 }
 
 impl Takes {
@@ -145,6 +179,7 @@ impl Takes {
             Takes::Word { default, .. } => default.map(|w| Setting::Text(w.into())),
             Takes::Numbers { default, .. } => default.map(|n| Setting::Numbers(n.into())),
             Takes::Spans { default, .. } => default.map(|s| Setting::Spans(s.into())),
+            Takes::File { .. } => Some(Setting::File(None)),
         }
     }
 }
@@ -202,6 +237,9 @@ impl Parameter {
     }
 
     /// The same parameter, which must be given.
+    ///
+    /// # Panics
+    /// When it takes a file: in a declaration, then, that doesn't compile.
     pub const fn needed(mut self) -> Parameter {
         match &mut self.takes {
             Takes::Number { default, .. } => *default = None,
@@ -210,6 +248,7 @@ impl Parameter {
             Takes::Word { default, .. } => *default = None,
             Takes::Numbers { default, .. } => *default = None,
             Takes::Spans { default, .. } => *default = None,
+            Takes::File { .. } => panic!("a file may be left out"),
         }
         self
     }

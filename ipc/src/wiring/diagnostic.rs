@@ -4,9 +4,12 @@
 //! number that nobody would read anyway.
 
 use std::ops::Range;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use serde::Serialize;
 
+use super::catalog::Fault;
 use super::rule::Rule;
 
 /// Most errors of one file that are kept and shown; the rest are only counted.
@@ -30,8 +33,10 @@ pub struct Diagnostic {
     pub message: String,
     /// What was expected, or what to do.
     pub help: String,
-    /// Another place that belongs to it, with what stands there.
+    /// Another place that belongs to it, with what stands there; always in the file that was read.
     pub also: Option<(Range<usize>, String)>,
+    /// The file that the offending bytes stand in, if it is one that the file that was read names.
+    pub within: Option<Arc<Source>>,
 }
 
 /// A diagnostic with its place spelled out, as reports carry it.
@@ -51,15 +56,32 @@ pub struct Located {
     pub help: String,
     /// Line and column of another place that belongs to it.
     pub also: Option<(usize, usize)>,
+    /// The file of that other place, if it is another one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub also_file: Option<String>,
 }
 
 /// A text with its name.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Source {
     /// The file's name, as errors show it.
     pub name: String,
     /// Its text.
     pub text: String,
+    /// Where the files lie that it names.
+    pub files: Files,
+}
+
+/// Where the files lie that a text names.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub enum Files {
+    /// Nowhere: a text that is built in, or comes over a socket, may name none.
+    #[default]
+    Nowhere,
+    /// In this folder.
+    In(PathBuf),
+    /// Not here any more: what is named is not read. For recordings, whose body is not built again.
+    Unread,
 }
 
 /// The errors of one file; there is at least one.
@@ -74,12 +96,24 @@ pub struct Rejected {
 }
 
 impl Source {
-    /// A text under a name.
+    /// A text under a name, which may name no files.
     pub fn new(name: impl Into<String>, text: impl Into<String>) -> Source {
         Source {
             name: name.into(),
             text: text.into(),
+            files: Files::Nowhere,
         }
+    }
+
+    /// The text of the file at `path`; files that it names lie in the same folder, or are found from there.
+    pub fn of_file(path: &Path, text: impl Into<String>) -> Source {
+        Source::new(path.display().to_string(), text).beside(path)
+    }
+
+    /// The same text, whose files are found from the folder of `path`.
+    pub fn beside(mut self, path: &Path) -> Source {
+        self.files = Files::In(path.parent().unwrap_or(Path::new("")).into());
+        self
     }
 
     /// The bytes of a file as text.
@@ -89,7 +123,7 @@ impl Source {
     pub fn from_bytes(name: impl Into<String>, bytes: Vec<u8>) -> Result<Source, Rejected> {
         let name = name.into();
         let error = match String::from_utf8(bytes) {
-            Ok(text) => return Ok(Source { name, text }),
+            Ok(text) => return Ok(Source::new(name, text)),
             Err(error) => error,
         };
         let valid = error.utf8_error().valid_up_to();
@@ -99,7 +133,7 @@ impl Source {
         let mut findings = Findings::default();
         let help = "expected a text file in UTF-8; save it again with that encoding";
         findings.refuse(Rule::NotText, valid..valid + 1, message, help);
-        findings.into_result(&Source { name, text }, None)
+        findings.into_result(&Source::new(name, text), None)
     }
 
     /// The last boundary between characters that is not after `offset`.
@@ -121,19 +155,31 @@ impl Source {
     }
 }
 
+impl Diagnostic {
+    /// Where it belongs in the file that was read.
+    pub(super) fn here(&self) -> &Range<usize> {
+        match (&self.within, &self.also) {
+            (Some(_), Some((at, _))) => at,
+            _ => &self.at,
+        }
+    }
+}
+
 impl Rejected {
     /// Every error with its place.
     pub fn located(&self) -> Vec<Located> {
         let place = |d: &Diagnostic| {
-            let (line, column) = self.source.place(d.at.start);
+            let file = d.within.as_deref().unwrap_or(&self.source);
+            let (line, column) = file.place(d.at.start);
             Located {
-                file: self.source.name.clone(),
+                file: file.name.clone(),
                 line,
                 column,
                 rule: d.rule,
                 message: d.message.clone(),
                 help: d.help.clone(),
                 also: d.also.as_ref().map(|(at, _)| self.source.place(at.start)),
+                also_file: d.within.as_ref().map(|_| self.source.name.clone()),
             }
         };
         self.diagnostics.iter().map(place).collect()
@@ -160,7 +206,14 @@ pub struct Findings {
 impl Findings {
     /// Notes an error at `at`, of a grammar whose rules have no codes.
     pub fn error(&mut self, at: Range<usize>, message: impl Into<String>, help: impl Into<String>) {
-        self.note(None, at, message.into(), help.into(), None);
+        self.note(Diagnostic {
+            rule: None,
+            at,
+            message: message.into(),
+            help: help.into(),
+            also: None,
+            within: None,
+        });
     }
 
     /// Notes that `rule` is broken at `at`.
@@ -171,7 +224,14 @@ impl Findings {
         message: impl Into<String>,
         help: impl Into<String>,
     ) {
-        self.note(Some(rule), at, message.into(), help.into(), None);
+        self.note(Diagnostic {
+            rule: Some(rule),
+            at,
+            message: message.into(),
+            help: help.into(),
+            also: None,
+            within: None,
+        });
     }
 
     /// Notes that `rule` is broken at `at`, together with another place and what stands there.
@@ -183,24 +243,29 @@ impl Findings {
         help: impl Into<String>,
         also: (Range<usize>, String),
     ) {
-        self.note(Some(rule), at, message.into(), help.into(), Some(also));
+        self.note(Diagnostic {
+            rule: Some(rule),
+            at,
+            message: message.into(),
+            help: help.into(),
+            also: Some(also),
+            within: None,
+        });
     }
 
-    fn note(
-        &mut self,
-        rule: Option<Rule>,
-        at: Range<usize>,
-        message: String,
-        help: String,
-        also: Option<(Range<usize>, String)>,
-    ) {
-        let new = Diagnostic {
-            rule,
-            at,
-            message,
-            help,
-            also,
-        };
+    /// Notes a fault of the file `within`, which is named at `named`.
+    pub fn refuse_within(&mut self, rule: Rule, within: &Arc<Source>, fault: Fault, named: Range<usize>) {
+        self.note(Diagnostic {
+            rule: Some(rule),
+            at: fault.at,
+            message: fault.message,
+            help: fault.help,
+            also: Some((named, "named here".into())),
+            within: Some(within.clone()),
+        });
+    }
+
+    fn note(&mut self, new: Diagnostic) {
         if self.list.len() >= FINDINGS_MAX {
             self.more += 1;
         } else if !self.list.contains(&new) {
@@ -272,7 +337,8 @@ impl Findings {
                     !self.list.is_empty(),
                     "a file without a value has an error to show"
                 );
-                self.list.sort_by_key(|d| (d.at.start, d.at.end));
+                self.list
+                    .sort_by_key(|d| (d.here().start, d.here().end, d.at.start, d.at.end));
                 Err(Rejected {
                     source: source.clone(),
                     diagnostics: self.list,

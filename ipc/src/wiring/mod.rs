@@ -22,9 +22,9 @@ pub mod schema;
 pub mod sketch;
 mod syntax;
 
-pub use catalog::{Catalog, Declaration, Parameter, Port, Setting, Takes};
+pub use catalog::{Attached, Catalog, Declaration, Fault, Parameter, Port, Setting, Takes};
 pub use creature::{BODY, Creature, PortName};
-pub use diagnostic::{Rejected, Source};
+pub use diagnostic::{Files, Rejected, Source};
 pub use directory::Directory;
 pub use render::{Paint, Piece};
 pub use rule::Rule;

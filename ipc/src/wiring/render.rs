@@ -109,14 +109,25 @@ impl Source {
     }
 
     fn render(&self, lines: &[usize], diagnostic: &Diagnostic, paint: Paint<'_>, out: &mut String) {
-        let main = self.excerpt(lines, &diagnostic.at, Piece::Error, "");
+        let within = diagnostic.within.as_deref();
+        let file = within.unwrap_or(self);
+        let own_lines = within.map(Source::lines);
+        let main = file.excerpt(
+            own_lines.as_deref().unwrap_or(lines),
+            &diagnostic.at,
+            Piece::Error,
+            "",
+        );
         let (line, column) = (main.line, main.column);
         let mut excerpts = vec![main];
-        if let Some((at, label)) = &diagnostic.also {
-            excerpts.push(self.excerpt(lines, at, Piece::Also, label));
+        let also = diagnostic.also.as_ref();
+        let mut named = also.map(|(at, label)| self.excerpt(lines, at, Piece::Also, label));
+        if within.is_none() {
+            excerpts.extend(named.take());
         }
         excerpts.sort_by_key(|e| e.line);
-        let margin = excerpts.last().map_or(1, |e| e.line.to_string().len());
+        let last = excerpts.iter().chain(&named).map(|e| e.line).max();
+        let margin = last.map_or(1, |line| line.to_string().len());
         let kind = diagnostic
             .rule
             .map_or("error".into(), |rule| format!("error[{rule}]"));
@@ -131,16 +142,19 @@ impl Source {
             out,
             "{} {}:{line}:{column}",
             frame(&format!("{:margin$}-->", "")),
-            self.name
+            file.name
         );
         let bar = frame(&format!("{:margin$} |", ""));
         let _ = writeln!(out, "{bar}");
         let mut last = None;
-        for e in &excerpts {
-            if last.is_some_and(|last| e.line > last + 1) {
+        for e in excerpts.iter().chain(&named) {
+            if within.is_some() && e.piece == Piece::Also {
+                let arrow = frame(&format!("{:margin$}:::", ""));
+                let _ = writeln!(out, "{arrow} {}:{}:{}\n{bar}", self.name, e.line, e.column);
+            } else if last.is_some_and(|last| e.line > last + 1) {
                 let _ = writeln!(out, "{}", frame(&format!("{:margin$}...", "")));
             }
-            if last != Some(e.line) {
+            if last != Some(e.line) || within.is_some() {
                 let number = frame(&format!("{:>margin$} |", e.line));
                 let _ = writeln!(out, "{} {}", number, e.text);
             }

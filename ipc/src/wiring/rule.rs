@@ -35,7 +35,7 @@ macro_rules! rules {
 }
 
 rules! {
-    /// A file is not longer than 4 MiB.
+    /// A file is not longer than 4 MiB, and one that it names not longer than its key takes.
     FileTooLong = "file-too-long",
     /// A file is text in UTF-8.
     NotText = "not-text",
@@ -65,6 +65,12 @@ rules! {
     ReservedName = "reserved-name",
     /// The path of a device is absolute.
     BadPath = "bad-path",
+    /// A file that a key names is there and can be read.
+    MissingFile = "missing-file",
+    /// A file that a key names holds what the key takes.
+    BadFile = "bad-file",
+    /// Of keys that say the same in two ways one is given.
+    ExclusiveKeys = "exclusive-keys",
     /// A port is written as `module.port`.
     BadPort = "bad-port",
     /// A wire is written as `from.output -> to.input`.

@@ -139,15 +139,31 @@ fn of_kind(declaration: &Declaration, grammar: &Grammar) -> Json {
         .iter()
         .filter(|p| p.takes.default().is_none());
     let required: Vec<&str> = needed.map(|p| p.name).collect();
+    let mut then = json!({
+        "description": declaration.about,
+        "properties": properties,
+        "required": required,
+        "additionalProperties": false,
+    });
+    let apart: Vec<Json> = declaration.parameters.iter().flat_map(not_together).collect();
+    if !apart.is_empty() {
+        then["allOf"] = apart.into();
+    }
     json!({
         "if": {"properties": {"kind": {"const": declaration.name}}, "required": ["kind"]},
-        "then": {
-            "description": declaration.about,
-            "properties": properties,
-            "required": required,
-            "additionalProperties": false,
-        },
+        "then": then,
     })
+}
+
+/// That a parameter does not stand beside those that it is given instead of.
+fn not_together(parameter: &'static Parameter) -> impl Iterator<Item = Json> {
+    let others = match parameter.takes {
+        Takes::File { instead_of, .. } => instead_of,
+        _ => &[],
+    };
+    others
+        .iter()
+        .map(|other| json!({"not": {"required": [parameter.name, other]}}))
 }
 
 fn of_parameter(parameter: &Parameter) -> Json {
@@ -179,6 +195,7 @@ fn of_parameter(parameter: &Parameter) -> Json {
                 default.map(|d| spell(d).into()),
             )
         }
+        Takes::File { .. } => (json!({"type": "string"}), None),
     };
     let unit = match parameter.unit {
         "" | "1" => String::new(),

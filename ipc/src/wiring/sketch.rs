@@ -76,10 +76,11 @@ pub fn sketch(source: &Source, rejected: Option<&Rejected>) -> Sketch {
     }
     for (diagnostic, placed) in diagnostics.iter().zip(marker.placed) {
         if !placed {
-            let (line, _) = source.place(diagnostic.at.start);
+            let file = diagnostic.within.as_deref().unwrap_or(source);
+            let (line, _) = file.place(diagnostic.at.start);
             sketch
                 .faults
-                .push(format!("{}:{line}: {}", source.name, say(diagnostic)));
+                .push(format!("{}:{line}: {}", file.name, say(diagnostic)));
         }
     }
     sketch
@@ -95,7 +96,7 @@ impl Marker<'_> {
     fn fault(&mut self, places: &[Range<usize>]) -> Option<String> {
         let mut said: Vec<String> = Vec::new();
         for (diagnostic, placed) in self.diagnostics.iter().zip(&mut self.placed) {
-            let at = &diagnostic.at;
+            let at = diagnostic.here();
             if at.start < at.end && places.iter().any(|p| p.start < at.end && at.start < p.end) {
                 *placed = true;
                 said.push(say(diagnostic));

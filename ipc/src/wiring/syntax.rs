@@ -65,7 +65,7 @@ pub(super) fn drop_echoes(source: &Source, findings: &mut Findings) {
         d.rule == Some(Rule::Syntax)
             || !broken
                 .iter()
-                .any(|b| b.start <= d.at.start && d.at.start <= b.end)
+                .any(|b| b.start <= d.here().start && d.here().start <= b.end)
     });
 }
 

@@ -4,7 +4,7 @@
 
 use ipc::clock::Span;
 use ipc::message::Kind;
-use ipc::wiring::{Catalog, Declaration, Parameter, Port, Takes};
+use ipc::wiring::{Catalog, Declaration, Fault, Parameter, Port, Takes};
 
 const BLANK: Declaration = Declaration {
     name: "",
@@ -55,6 +55,14 @@ static CART: Declaration = Declaration {
                 high: f64::MAX,
                 most: 3,
                 default: Some(&[0.0, 0.0]),
+            },
+        ),
+        parameter(
+            "course",
+            Takes::File {
+                bytes_max: 200,
+                check: course_faults,
+                instead_of: &["start"],
             },
         ),
     ],
@@ -133,6 +141,24 @@ static WANDER: Declaration = Declaration {
     ],
     ..BLANK
 };
+
+/// A course is sound if each of its lines begins with `gate`.
+fn course_faults(text: &str) -> Vec<Fault> {
+    let mut faults = Vec::new();
+    let mut start = 0;
+    for line in text.split_inclusive('\n') {
+        let word = line.split_whitespace().next().unwrap_or("");
+        if word != "gate" {
+            faults.push(Fault {
+                at: start..start + word.len(),
+                message: format!("a {word:?} on the course"),
+                help: "expected a gate".into(),
+            });
+        }
+        start += line.len();
+    }
+    faults
+}
 
 static NOT: Declaration = Declaration {
     name: "not",

@@ -165,6 +165,7 @@ fn bad_files_that_a_schema_can_see_do_not_pass_it() {
         "reserved-name",
         "out-of-range",
         "bad-accounts",
+        "exclusive-keys",
     ] {
         let path = folder("bad").join(name).with_extension("toml");
         let text = std::fs::read_to_string(path).expect("text");

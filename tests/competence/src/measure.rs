@@ -2,6 +2,7 @@
 //!
 //! Must never depend on how many cores there are: every trial stands for itself.
 
+use std::path::PathBuf;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
@@ -22,6 +23,8 @@ pub struct Order {
     pub hours: f64,
     /// Threads.
     pub threads: usize,
+    /// A layout file to measure in, instead of the generated office that belongs to each seed.
+    pub layout: Option<PathBuf>,
 }
 
 /// A row with the figures of its trials, as many as were done, by seed.
@@ -48,16 +51,19 @@ pub fn measure(order: &Order, stop: &AtomicBool, done: &(dyn Fn() + Sync)) -> Ve
         for _ in 0..order.threads.max(1) {
             scope.spawn(|| {
                 while !stopped() {
-                    let Some(&(row, seed)) = tasks.get(next.fetch_add(1, Ordering::Relaxed)) else {
+                    let Some(&(at, seed)) = tasks.get(next.fetch_add(1, Ordering::Relaxed)) else {
                         return;
                     };
-                    let Some(figures) = trial::run(order.rows[row], seed, order.hours, &stopped) else {
+                    let (row, layout) = (order.rows[at], order.layout.as_deref());
+                    let Some(figures) =
+                        trial::run_text(row, &row.asked(seed, layout), seed, order.hours, &stopped)
+                    else {
                         return;
                     };
                     results
                         .lock()
                         .expect("no trial panics holding it")
-                        .push((row, figures));
+                        .push((at, figures));
                     done();
                 }
             });

@@ -4,6 +4,7 @@
 //! added.
 
 use std::fmt::Write as _;
+use std::path::Path;
 
 /// First layout seed of measurements: the offices that layers are built in are 1 to 10.
 pub const LAYOUTS_FROM: u64 = 1000;
@@ -179,6 +180,11 @@ pub const MANIFESTS: &[&str] = &[
 ];
 
 impl Row {
+    /// Whether it is measured in an office with rooms and people.
+    pub fn is_in_an_office(&self) -> bool {
+        self.world == World::Office && !self.quiet
+    }
+
     /// The creature file of this row with `seed`; `layout` is the body's line that says where.
     pub fn text(&self, seed: u64, layout: &str) -> String {
         let mut body = String::from(layout);
@@ -227,6 +233,14 @@ impl Row {
         };
         let _ = write!(text, "{}", FLOOD.replace("KIND", flood));
         text
+    }
+
+    /// [`Row::text`] in the office of the file `layout`, if there is one, else in that of [`Row::measured`].
+    pub fn asked(&self, seed: u64, layout: Option<&Path>) -> String {
+        match layout {
+            Some(path) => self.text(seed, &format!("layout_file = {:?}", path.display().to_string())),
+            None => self.measured(seed),
+        }
     }
 
     /// [`Row::text`] in the office that belongs to `seed` in measurements.

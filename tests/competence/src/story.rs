@@ -7,9 +7,10 @@ use std::fmt::Write as _;
 use ipc::clock::Span;
 use ipc::message::{Map, Payload};
 use ipc::wire::Reader;
+use office::Pose;
 
 use crate::row::Row;
-use crate::trial::{Killer, Robot, advance, office_of, robots};
+use crate::trial::{Killer, Robot, advance, office_of, robots, warehouse_of};
 
 /// People and robots nearer than this are told of, m from middle to middle.
 const NEAR_M: f64 = 2.5;
@@ -18,7 +19,7 @@ const NEAR_M: f64 = 2.5;
 /// every tenth of a second, one more for every sonar map.
 ///
 /// # Panics
-/// With the checker's findings, when the row's creature is not one, or is in no office.
+/// With the checker's findings, when the row's creature is not one.
 pub fn story(row: &Row, seed: u64, robot: usize, from_s: f64, to_s: f64) -> String {
     let mut robots = robots(row, &row.measured(seed), seed);
     let mut killer = Killer::new(row, seed);
@@ -50,6 +51,32 @@ fn ranges(map: &Option<Reader>, heard: &mut u64, out: &mut String) {
     let _ = writeln!(out, "          map {ranges:.2?}");
 }
 
+/// Where a robot is and thinks it is, how far it has gone in m, and everybody else with their place.
+fn scene(robot: &mut Robot, index: usize) -> (Pose, Pose, f64, Vec<(String, f64, f64)>) {
+    if let Some(world) = warehouse_of(&mut robot.run.machine) {
+        let pose = |(x, y, heading)| Pose { x, y, heading };
+        let (floor, report) = (&world.warehouse, world.warehouse.report());
+        let people = floor.people().enumerate();
+        let people = people.map(|(n, (x, y, _))| (format!("person {}", n + 1), x, y));
+        return (
+            pose(report.pose),
+            pose(floor.believed()),
+            report.travelled_m,
+            people.collect(),
+        );
+    }
+    let office = office_of(&mut robot.run.machine);
+    let others = office
+        .others_of(index)
+        .map(|(name, x, y)| (name.to_string(), x, y));
+    (
+        office.true_pose_of(index),
+        office.odometry_of(index),
+        office.distance_travelled_of_m(index),
+        others.collect(),
+    )
+}
+
 fn tell(robot: &mut Robot, index: usize, now: f64, out: &mut String) {
     let stations = robot.run.machine.stations.iter();
     let states = ["turn", "forward", "avoid", "pathplan"];
@@ -57,9 +84,7 @@ fn tell(robot: &mut Robot, index: usize, now: f64, out: &mut String) {
         let state = stations.clone().find_map(|s| s.running.state_of(module));
         state.unwrap_or("-").to_string()
     });
-    let office = office_of(&mut robot.run.machine);
-    let (pose, believed) = (office.true_pose_of(index), office.odometry_of(index));
-    let gone = office.distance_travelled_of_m(index);
+    let (pose, believed, gone, others) = scene(robot, index);
     let _ = write!(
         out,
         "{now:8.1}  at {:.3} {:.3} {:.2}, believes {:.3} {:.3} {:.2}, gone {gone:.3}, {}; ",
@@ -72,7 +97,7 @@ fn tell(robot: &mut Robot, index: usize, now: f64, out: &mut String) {
         states.join(" ")
     );
     let (sin, cos) = pose.heading.sin_cos();
-    let others = office.others_of(index).filter_map(|(name, x, y)| {
+    let others = others.into_iter().filter_map(|(name, x, y)| {
         let (dx, dy) = (x - pose.x, y - pose.y);
         let near = dx.hypot(dy) < NEAR_M;
         near.then(|| {

@@ -4,6 +4,7 @@
 //! halt channel and its world.
 
 use std::collections::BTreeSet;
+use std::path::Path;
 
 use afsm::Kinds;
 use afsm::random::Random;
@@ -73,19 +74,11 @@ struct Watch {
     place: Option<((f64, f64), Time)>,
 }
 
-/// Runs one trial of `row` with `seed` for `hours`: the figures of each robot. `stop` is asked now and then
-/// and ends it early, with nothing.
+/// Runs one trial of `row`, whose creature is `text`, with `seed` for `hours`: the figures of each robot. `stop` is
+/// asked now and then and ends it early, with nothing.
 ///
 /// # Panics
-/// With the checker's findings, when the row's creature is not one.
-pub fn run(row: &Row, seed: u64, hours: f64, stop: &dyn Fn() -> bool) -> Option<Vec<Figures>> {
-    run_text(row, &row.measured(seed), seed, hours, stop)
-}
-
-/// [`run`] of another creature text than the one of measurements.
-///
-/// # Panics
-/// With the checker's findings, when it is not a creature.
+/// With the checker's findings, when the text is not a creature.
 pub fn run_text(
     row: &Row,
     text: &str,
@@ -126,9 +119,14 @@ pub(crate) fn advance(robots: &mut [Robot]) {
     robots.iter_mut().for_each(|robot| robot.run.advance_to(end));
 }
 
+/// A creature's text; files that it names are found from where the program was started.
+pub fn source(text: &str) -> Source {
+    Source::of_file(Path::new("trial.toml"), text)
+}
+
 fn machine(text: &str) -> Machine {
     let kinds = all_kinds();
-    let creature = check::creature(&Source::new("trial.toml", text), &kinds);
+    let creature = check::creature(&source(text), &kinds);
     let creature = creature.unwrap_or_else(|rejected| panic!("{rejected}"));
     let page = Page::in_memory(output_ports(&creature).count());
     Machine::new(creature, &kinds, page, None)
@@ -141,18 +139,28 @@ pub(crate) fn robots(row: &Row, text: &str, seed: u64) -> Vec<Robot> {
     }
     // The second starts in another room: the first goal of the people's that is far from the first robot.
     let body = first.creature.body.clone().expect("the creature has a body");
-    let begin = office_of(&mut first).true_pose();
-    let places = office_of(&mut first).floor_plan().places;
-    let far = places
-        .iter()
-        .find(|p| p.goal && (p.x - begin.x).hypot(p.y - begin.y) > 4.0);
-    let far = far.expect("an office is larger than four metres");
-    let world = OfficeWorld::new(&body.settings, seed, None, &[(far.x, far.y, 0.0)]);
+    let far = far_place(&mut first).expect("an office is larger than four metres");
+    let world = OfficeWorld::new(&body.settings, seed, None, &[(far.0, far.1, 0.0)]);
     let fellow = world.fellow(1);
     let mut second = machine(&text.replacen("creature = \"allen\"", "creature = \"fellow\"", 1));
     put(&mut first, world);
     put(&mut second, fellow);
     vec![Robot::new(first, 0), Robot::new(second, 1)]
+}
+
+/// The first goal of the people's that is far from the first robot, x and y in m.
+fn far_place(first: &mut Machine) -> Option<(f64, f64)> {
+    let begin = office_of(first).true_pose();
+    let places = office_of(first).floor_plan().places;
+    let far = places
+        .iter()
+        .find(|p| p.goal && (p.x - begin.x).hypot(p.y - begin.y) > 4.0);
+    far.map(|p| (p.x, p.y))
+}
+
+/// Whether there is room for all robots of `row` in the office of `text`, which is a creature in one.
+pub fn has_room(row: &Row, text: &str) -> bool {
+    row.robots == 1 || far_place(&mut machine(text)).is_some()
 }
 
 fn put(machine: &mut Machine, world: OfficeWorld) {
@@ -165,7 +173,7 @@ fn world_of(machine: &mut Machine) -> &mut OfficeWorld {
     world.expect("the body is in an office")
 }
 
-fn warehouse_of(machine: &mut Machine) -> Option<&mut WarehouseWorld> {
+pub(crate) fn warehouse_of(machine: &mut Machine) -> Option<&mut WarehouseWorld> {
     let body = machine.body.as_mut().expect("the creature has a body");
     body.world.as_any().downcast_mut::<WarehouseWorld>()
 }
@@ -257,9 +265,25 @@ impl Robot {
         self.look_at_contacts(pose);
     }
 
-    /// Notes the contacts since the last look that are the robot's doing; the office remembers the latest.
+    /// Notes the contacts since the last look that are the robot's doing; the office remembers the latest ones, the
+    /// warehouse the latest.
     fn look_at_contacts(&mut self, pose: Pose) {
-        if warehouse_of(&mut self.run.machine).is_some() {
+        if let Some(world) = warehouse_of(&mut self.run.machine) {
+            let report = world.warehouse.report();
+            let new = report.caused > std::mem::replace(&mut self.watch.touched, report.caused);
+            self.figures
+                .caused_with
+                .extend(report.latest.filter(|_| new).map(|c| {
+                    Caused {
+                        robot: 1,
+                        time_s: c.time_s,
+                        other: c
+                            .person
+                            .map_or("the floor".into(), |n| format!("person {}", n + 1)),
+                        approach_m_s: c.approach_m_s,
+                        at: (pose.x, pose.y),
+                    }
+                }));
             return;
         }
         let index = self.index;

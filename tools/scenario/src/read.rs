@@ -46,7 +46,7 @@ pub fn file(path: &Path, kinds: &Kinds) -> Result<Scenario, Vec<Rejected>> {
 fn load(path: &Path) -> Result<Source, Rejected> {
     let name = path.display().to_string();
     match std::fs::read_to_string(path) {
-        Ok(text) => Ok(Source::new(name, text)),
+        Ok(text) => Ok(Source::of_file(path, text)),
         Err(e) => {
             let diagnostic = Diagnostic {
                 rule: None,
@@ -54,6 +54,7 @@ fn load(path: &Path) -> Result<Source, Rejected> {
                 message: format!("the file cannot be read: {e}"),
                 help: "expected the path of a TOML file".into(),
                 also: None,
+                within: None,
             };
             Err(Rejected {
                 source: Source::new(name, ""),

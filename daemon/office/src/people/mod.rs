@@ -5,7 +5,8 @@
 //! attacker:  3 Chase ──close──► 4 Pester ──time──► 2 Go (away) ──arrived──► 1 Stand ──time──► 3
 //!            4 ──robot got away──► 3        3 ──no headway──► 2
 //! cornerer:  as an attacker, but 3 goes to where the robot has the nearest wall behind it, and 4 lasts
-//! talker:    1 and 2 in step with two others: three with one goal, each at an own side of it
+//! talker:    6 Join, in step with two others: three with one goal, each at an own side of it
+//!            6 ──no headway──► 2 ──arrived, or no headway──► 1 ──time──► 6
 //! scripted:  5 Straight, for ever
 //! ```
 //!
@@ -20,8 +21,10 @@ use crate::space::Space;
 use crate::view::PersonKind;
 use crate::ways::Ways;
 
+mod begin;
 mod manners;
 
+pub(crate) use begin::starting_place;
 pub(crate) use manners::GROUP;
 use manners::{
     ACCELERATION_M_S2, APPROACH_RADIUS_M, ASIDE_M, ATTACK_PACE_M_S, AWAY_S, BALKED_S, CARELESS, CORNER_M,
@@ -220,7 +223,12 @@ impl Person {
                 (via.map_or_else(aim, |place| around.ways.place(place)) - at).unit()
             }
             Intent::Join { goal, via } => {
-                if !headway || self.meeting(around).is_none_or(|meeting| meeting != goal) {
+                if !headway {
+                    // Gives way, as everybody does: two who would step on one point held whoever stood on it.
+                    self.go(at, around, noise);
+                    return Vec2::default();
+                }
+                if self.meeting(around).is_none_or(|meeting| meeting != goal) {
                     self.stand(around.time_s, BALKED_S, noise);
                     return Vec2::default();
                 }
@@ -384,36 +392,4 @@ fn open_side(at: Vec2, robot: Disc, around: &Surroundings<'_>) -> Vec2 {
     } else {
         side
     }
-}
-
-/// Places for people to begin at: free, in reach of the way points, not on top of anybody.
-pub(crate) fn starting_place(
-    space: &Space,
-    ways: &Ways,
-    size: (f64, f64),
-    discs: &[Disc],
-    robots: usize,
-    noise: &mut Noise,
-) -> Option<Vec2> {
-    /// Draws before giving up: a floor that is nine tenths full still has a free place in it.
-    const DRAWS_MAX: usize = 400;
-    for draw in 0..DRAWS_MAX {
-        let at = crate::plane::vec2(noise.between(0.0, size.0), noise.between(0.0, size.1));
-        let disc = Disc {
-            at,
-            radius: PERSON_RADIUS_M,
-        };
-        // Nobody begins within arm's reach of the robot unless the room is too small for that.
-        let room = if draw < DRAWS_MAX / 2 { 1.5 } else { 0.3 };
-        let free = discs
-            .iter()
-            .enumerate()
-            .all(|(i, other)| disc.gap(other) > if i < robots { room } else { 0.1 })
-            && space.nearest(at, PERSON_RADIUS_M + 0.05).is_none();
-        let reachable = |place: usize| space.passable(at, ways.place(place), PERSON_RADIUS_M);
-        if free && ways.join(space, at, None).is_some_and(reachable) {
-            return Some(at);
-        }
-    }
-    None
 }

@@ -2,9 +2,10 @@
 //!
 //! Must never hold a value that the world does not take from here.
 
+use ::office::{LAYOUT_BYTES_MAX, Layout};
 use ipc::clock::Span;
 use ipc::message::Kind;
-use ipc::wiring::{Declaration, Parameter, Port, Takes};
+use ipc::wiring::{Declaration, Fault, Parameter, Port, Takes};
 
 use crate::body::rover;
 
@@ -33,7 +34,7 @@ pub(super) static DECLARATION: Declaration = Declaration {
         .between(0.0, 1.0),
     ],
     parameters: &[
-        Parameter::number("people", 6.0, "people who walk about")
+        Parameter::number("people", 6.0, "people who walk about, as far as there is room")
             .between(0.0, 40.0)
             .unit("1"),
         Parameter::number("attackers", 2.0, "people who walk straight at the robot")
@@ -52,6 +53,15 @@ pub(super) static DECLARATION: Declaration = Declaration {
         )
         .between(0.0, 1e15)
         .unit("1"),
+        Parameter::new(
+            "layout_file",
+            Takes::File {
+                bytes_max: LAYOUT_BYTES_MAX,
+                check: layout_faults,
+                instead_of: &["layout", "number"],
+            },
+            "an office of your own, read from this file; `subsumectl new layout NAME` writes one to begin from",
+        ),
         Parameter::number("talkers", 0.0, "people who stand in groups of three and talk")
             .between(0.0, 20.0)
             .unit("1"),
@@ -117,3 +127,16 @@ pub(super) static DECLARATION: Declaration = Declaration {
             .unit("h"),
     ],
 };
+
+/// All that is wrong with the text of a layout.
+fn layout_faults(text: &str) -> Vec<Fault> {
+    let Err(errors) = Layout::read(text) else {
+        return Vec::new();
+    };
+    let faults = errors.into_iter().map(|error| Fault {
+        at: error.at,
+        message: error.message,
+        help: error.help,
+    });
+    faults.collect()
+}

@@ -64,6 +64,12 @@ impl Given<'_> {
     }
 
     fn layout(&self) -> Layout {
+        if let Setting::File(Some(own)) = self.get("layout_file") {
+            return match Layout::parse(&own.text) {
+                Ok(layout) => layout,
+                Err(error) => panic!("{}, which was checked: {error}", own.path.display()),
+            };
+        }
         let number = self.number("number") as u64;
         match self.get("layout") {
             Setting::Text(word) if word == "empty" => Layout::empty_room(8.0, 6.0),

@@ -13,6 +13,7 @@
 //! Must never let a creature through in which a name does not resolve, a type does not match, an input has
 //! two writers without a tap, or a lower level could come to depend on a higher one.
 
+mod attached;
 mod halt;
 mod names;
 mod outside;
@@ -27,7 +28,7 @@ use std::ops::Range;
 
 use super::catalog::{Catalog, Declaration};
 use super::creature::{Creature, Halt, Layer, PortName};
-use super::diagnostic::{Findings, Rejected, Source};
+use super::diagnostic::{Files, Findings, Rejected, Source};
 use super::directory::Directory;
 use super::document::{self as doc, Keys, Placed};
 use super::grammar;
@@ -118,6 +119,7 @@ fn check_part(
         module_kinds: kinds(catalog.modules()),
         body_kinds: kinds(catalog.bodies()),
         findings,
+        files: &source.files,
         host,
         at,
         modules: HashMap::new(),
@@ -143,6 +145,7 @@ struct Known {
 
 struct Checker<'c> {
     findings: Findings,
+    files: &'c Files,
     module_kinds: HashMap<&'static str, &'static Declaration>,
     body_kinds: HashMap<&'static str, &'static Declaration>,
     host: Option<&'c Directory>,

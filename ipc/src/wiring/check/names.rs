@@ -65,9 +65,13 @@ impl Checker<'_> {
     }
 
     fn settings(&mut self, mut keys: Keys<'_, '_>, declaration: &'static Declaration) -> Vec<Setting> {
-        let f = &mut self.findings;
         let mut settings = Vec::new();
         for parameter in declaration.parameters {
+            if let Takes::File { .. } = parameter.takes {
+                settings.push(Setting::File(self.attached(&mut keys, parameter)));
+                continue;
+            }
+            let f = &mut self.findings;
             let given = match parameter.takes.default() {
                 Some(_) => keys.take(parameter.name),
                 None => keys.need(parameter.name, f),
@@ -89,10 +93,11 @@ impl Checker<'_> {
                     let spans = items.iter().filter_map(|s| doc::span(s, false, f));
                     Some(Setting::Spans(spans.collect()))
                 }
+                Takes::File { .. } => None,
             });
             settings.push(read.or(parameter.takes.default()).unwrap_or(Setting::Bit(false)));
         }
-        keys.finish(f);
+        keys.finish(&mut self.findings);
         settings
     }
 

@@ -96,6 +96,9 @@ const RESTING_M: f64 = 0.15;
 const FOLLOW: f64 = 10.0;
 /// What the measured speed may be off by, m/s: slip, and the speed gained before it shows.
 const SPEED_OFF_M_S: f64 = 0.04;
+/// Ranges of two neighbours that differ by less, metres, are one echo heard by both: two echoes of one thing differ
+/// by the error of a range, twenty times as much.
+const ONE_ECHO_M: f64 = 0.001;
 /// Points that stand for the arc an echo can have come from: its ends and its middle.
 const ARC: [f64; 3] = [-HALF_CONE, 0.0, HALF_CONE];
 
@@ -110,7 +113,8 @@ struct Mark {
     resting: bool,
 }
 
-type Marks = [Option<Mark>; SONARS];
+/// The newest mark of each sonar, then older ones that may still hold.
+type Marks = [[Option<Mark>; SONARS]; 2];
 
 // A module is in one state at a time; boxing the large one would save nothing and allocate in a step.
 #[allow(clippy::large_enum_variant)]
@@ -154,24 +158,35 @@ impl Collide {
 
     /// The marks of a map heard `at` a pose, given those of the map before.
     fn marks(&self, map: &Map, pose: Pose, at: Time, before: &Marks) -> Marks {
-        std::array::from_fn(|index| {
+        let old = || before.iter().flatten().flatten();
+        let newest = std::array::from_fn(|index| {
             let range = map.ranges[index];
-            if range < FAR_M {
+            (range < FAR_M).then(|| {
                 let range = if range < TOUCHING_M { 0.0 } else { range };
                 let middle = self.radius + range + PERSON_M;
                 let arc = ARC.map(|off| Spot::from(pose, middle, bearing(index) + off));
-                let resting = before.iter().flatten().any(|old| same_place(&old.arc, &arc));
-                return Some(Mark { arc, at, resting });
-            }
-            // An echo that was near a second ago and now is none was lost: the older one stands for it.
-            let lost = |mark: &&Mark| range > NO_ECHO_M && at.since(mark.at) < self.lost;
+                let resting = old().any(|old| same_place(&old.arc, &arc));
+                Mark { arc, at, resting }
+            })
+        });
+        // An echo that was near a second ago and now is none was lost: the older one stands for it. It may have been
+        // lost as well where a neighbour's is heard instead; that is rare, and not believed of two maps in a row.
+        let held = std::array::from_fn(|index| {
+            let known = match map.ranges[index] {
+                range if range > NO_ECHO_M => &before[..],
+                _ if is_a_neighbours(&map.ranges, index) => &before[..1],
+                _ => return None,
+            };
             let same_way = |mark: &&Mark| {
                 let seen = mark.arc[1].seen_from(pose);
                 let off = wrap(libm::atan2(seen.y, seen.x) - bearing(index));
                 off.abs() <= HALF_CONE
             };
-            before.iter().flatten().filter(lost).find(same_way).copied()
-        })
+            let young = |mark: &&Mark| at.since(mark.at) < self.lost;
+            let mut known = known.iter().flatten().flatten().filter(young);
+            known.find(same_way).copied()
+        });
+        [newest, held]
     }
 
     /// Takes in where the wheels think they are, and with it how fast the robot is.
@@ -205,7 +220,7 @@ impl Collide {
         let way = speed * (self.latency.seconds() + speed / self.braking / 2.0);
         let meet = self.radius + PERSON_M + self.margin;
         let (cos, sin) = (libm::cos(pose.heading), libm::sin(pose.heading));
-        marks.iter().flatten().any(|mark| {
+        marks.iter().flatten().flatten().any(|mark| {
             let walked = self.walked(now.since(mark.at).seconds() + stop, mark.resting);
             let reaches = |spot: &Spot| {
                 let (dx, dy) = (spot.x - pose.x, spot.y - pose.y);
@@ -214,6 +229,15 @@ impl Collide {
             mark.arc.iter().any(reaches)
         })
     }
+}
+
+/// Whether what the `index`-th sonar heard may be a neighbour's echo (cross-talk: Borenstein and Koren, "Error
+/// eliminating rapid ultrasonic firing for mobile robot obstacle avoidance", 1995). What touches reads the same
+/// everywhere, and nothing can be nearer.
+fn is_a_neighbours(ranges: &[f64; SONARS], index: usize) -> bool {
+    let neighbours = [index + 1, index + SONARS - 1].map(|i| ranges[i % SONARS]);
+    let same = |range: &f64| (range - ranges[index]).abs() < ONE_ECHO_M;
+    ranges[index] > TOUCHING_M && neighbours.iter().any(same)
 }
 
 /// Whether two arcs are of one place, as near as sonar can tell. Their ends don't count: who walks past the
@@ -246,7 +270,7 @@ impl Module for Collide {
             let at = beat.stamp(MAP).unwrap_or(now);
             let before = match self.state {
                 State::Watching { marks, .. } => marks,
-                State::Blind => [None; SONARS],
+                State::Blind => Marks::default(),
             };
             let marks = self.marks(&map, pose, at, &before);
             self.state = State::Watching { marks, at };

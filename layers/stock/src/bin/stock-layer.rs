@@ -31,7 +31,7 @@ fn main() -> ExitCode {
         }
     };
     match std::fs::read_to_string(&path) {
-        Ok(text) => afsm::process::run_with(Source::new(&path, text), stock::kinds(), arguments),
+        Ok(text) => afsm::process::run_with(Source::of_file(path.as_ref(), text), stock::kinds(), arguments),
         Err(e) => {
             eprintln!("stock-layer: {path}: {e}; expected a manifest of a layer");
             ExitCode::from(2)
