@@ -336,6 +336,8 @@ fn halts(trial: &mut Trial, daemon: &Player, cause: &str, fault: Time, bound: Sp
     trial.outcome.expect(since().is_some(), || {
         format!("the fault came at {}, it said {:?}", fault.0, daemon.said())
     });
+    // A status is a tenth of a second old: nobody is to take an earlier one for the end of this halt.
+    let _ = wait_for("the status shows the halt", || !trial.stage.is_free(CREATURE));
 }
 
 /// When the gate in the motor unit closed for `cause` after `fault`, by the daemon's word.
