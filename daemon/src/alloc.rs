@@ -33,6 +33,17 @@ pub fn broken() -> u64 {
     BROKEN.load(Ordering::Relaxed)
 }
 
+/// From now on all threads take memory from one heap. With a heap for each of many short-lived threads, as the GNU
+/// library has it, memory that one caller's thread gave back is none for the next, and a daemon that is called all day
+/// grows all day. To be called before the first other thread is started.
+pub fn share_one_heap() {
+    #[cfg(target_env = "gnu")]
+    // SAFETY: sets a number in the allocator; there is no other thread yet.
+    unsafe {
+        libc::mallopt(libc::M_ARENA_MAX, 1);
+    }
+}
+
 /// The system's allocator, counting.
 #[derive(Debug)]
 pub struct Counting;

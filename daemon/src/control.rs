@@ -19,7 +19,8 @@ use ipc::control::{
 };
 
 use crate::admission::Admission;
-use crate::callers::{CALLERS_MAX, Caller, Callers};
+use crate::callers::{Caller, Callers};
+use crate::door::Door;
 use crate::gate::Causes;
 use crate::plugs::Joined;
 use crate::recorder::Begin;
@@ -124,58 +125,12 @@ impl Drop for Control {
     }
 }
 
-/// Where callers come in.
-struct Door {
-    listener: UnixListener,
-    shared: Arc<Shared>,
-    admission: Admission,
-    callers: Arc<Callers>,
-    leave: Arc<AtomicBool>,
-}
-
-impl Door {
-    fn attend(&self) {
-        while !self.leave.load(Ordering::Relaxed) {
-            match self.listener.accept() {
-                Ok((stream, _)) => self.let_in(stream),
-                Err(_) => std::thread::sleep(Duration::from_millis(10)),
-            }
-        }
-    }
-
-    fn let_in(&self, stream: UnixStream) {
-        if self.callers.len() >= CALLERS_MAX {
-            self.callers.make_room(clock::monotonic());
-            // Its thread leaves within a blink; should it not, this caller has to come again.
-            for _ in 0..20 {
-                if self.callers.len() < CALLERS_MAX {
-                    break;
-                }
-                std::thread::sleep(Duration::from_millis(1));
-            }
-            if self.callers.len() >= CALLERS_MAX {
-                return;
-            }
-        }
-        let Ok(caller) = self.callers.enter(&stream, clock::monotonic()) else {
-            return;
-        };
-        let (shared, admission, callers) =
-            (self.shared.clone(), self.admission.clone(), self.callers.clone());
-        let number = caller.number;
-        let answer = move || {
-            let _ = answer_all(stream, &caller, &shared, &admission);
-            drop(shared);
-            callers.leave(caller.number);
-        };
-        let builder = std::thread::Builder::new().name("caller".into());
-        if builder.stack_size(512 << 10).spawn(answer).is_err() {
-            self.callers.leave(number);
-        }
-    }
-}
-
-fn answer_all(stream: UnixStream, caller: &Caller, shared: &Shared, admission: &Admission) -> io::Result<()> {
+pub(crate) fn answer_all(
+    stream: UnixStream,
+    caller: &Caller,
+    shared: &Shared,
+    admission: &Admission,
+) -> io::Result<()> {
     stream.set_nonblocking(false)?;
     stream.set_read_timeout(Some(LOOK))?;
     stream.set_write_timeout(Some(ANSWER_TIME))?;

@@ -8,6 +8,7 @@ pub mod alloc;
 pub mod body;
 pub mod callers;
 pub mod control;
+mod door;
 pub mod events;
 pub mod executor;
 pub mod feeder;

@@ -30,6 +30,7 @@ use page::Token;
 static ALLOCATOR: daemon::alloc::Counting = daemon::alloc::Counting;
 
 fn main() -> ExitCode {
+    daemon::alloc::share_one_heap();
     let options = Options::parse();
     let (creature, file) = match load(&options) {
         Ok(loaded) => loaded,

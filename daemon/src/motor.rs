@@ -10,7 +10,6 @@
 use std::sync::Arc;
 
 use afsm::assemble::{FiledTap, Wires, join};
-use afsm::layer::trace_registers;
 use afsm::trace::Tracer;
 use ipc::clock::{Span, Time};
 use ipc::message::{WORDS_MAX, Words};
@@ -177,12 +176,17 @@ impl Motor {
             register.gather(now, std::mem::forget);
         }
         if let Some(tracer) = &mut self.tracer {
-            trace_registers(tracer, &self.registers);
+            for (slot, register) in self.registers.iter().enumerate() {
+                tracer.register(slot, register);
+            }
         }
     }
 
     /// Looks at every command between two beats; see [`Register::look`].
     pub fn look(&mut self, now: Time) {
+        if let Some(tracer) = &mut self.tracer {
+            tracer.forget();
+        }
         for register in &mut self.registers {
             register.look(now, std::mem::forget);
         }
@@ -190,6 +194,9 @@ impl Motor {
 
     /// Writes a message on the wire of the `index`-th sensor at once, as though the world had sent it.
     pub fn put(&mut self, index: usize, now: Time, words: &Words) {
+        if let Some(tracer) = &mut self.tracer {
+            tracer.forget();
+        }
         self.sensors[index].write(now, words);
     }
 
@@ -233,10 +240,14 @@ impl Motor {
             sensor.seen = reading.number;
             sensor.write(now, &reading.words);
             if let Some(tracer) = &mut self.tracer {
-                tracer.wrote(slot, sensor.written, &reading.words[..sensor.wire.kind().words()]);
+                tracer.wrote_next(slot, sensor.wire.kind(), &reading.words);
             }
         }
         if let Some(tracer) = &mut self.tracer {
+            if tracer.begins_anew() {
+                let sensors = self.sensors.iter().map(|s| (s.written, s.wire.kind()));
+                tracer.tell_numbers(self.registers.iter().map(Register::seen), sensors);
+            }
             tracer.end(now);
         }
     }

@@ -9,6 +9,8 @@
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use crate::executor::host;
+
 static PANICKED: AtomicBool = AtomicBool::new(false);
 
 /// Whether a thread of this process has panicked since [`guard`].
@@ -22,6 +24,8 @@ pub fn guard() {
     let report = std::panic::take_hook();
     std::panic::set_hook(Box::new(move |info| {
         PANICKED.store(true, Ordering::Relaxed);
+        // A backtrace takes tens of milliseconds: at a real-time priority they would be everybody else's on this host.
+        let _ = host::be_ordinary();
         report(info);
     }));
 }

@@ -65,6 +65,14 @@ pub fn lockable_bytes() -> Option<u64> {
     }
 }
 
+/// How much more address space this process may take (`RLIMIT_AS`), in bytes; `None` if there is no limit.
+pub fn address_space_left() -> Option<u64> {
+    let limit = getrlimit(Resource::As).current?;
+    let text = std::fs::read_to_string("/proc/self/statm").ok()?;
+    let pages: u64 = text.split_whitespace().next()?.parse().ok()?;
+    Some(limit.saturating_sub(pages * rustix::param::page_size() as u64))
+}
+
 /// Sees to it that a runaway real-time thread ends the process instead of starving the host.
 pub fn limit_runaway() {
     let limit = Rlimit {

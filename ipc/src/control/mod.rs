@@ -127,14 +127,19 @@ impl Connection {
             .map_err(|e| io::Error::new(io::ErrorKind::InvalidData, e))
     }
 
-    /// Asks and waits for the answer.
+    /// Asks and waits for the answer, through signals and a stop of this process as well.
     ///
     /// # Errors
     /// When the other end is gone or does not understand.
     pub fn ask(&mut self, request: &Request) -> io::Result<Reply> {
         self.send(request)?;
-        self.receive()?
-            .ok_or_else(|| io::Error::new(io::ErrorKind::UnexpectedEof, "the daemon closed the connection"))
+        let answer = loop {
+            match self.receive() {
+                Err(e) if e.kind() == io::ErrorKind::Interrupted => {}
+                other => break other?,
+            }
+        };
+        answer.ok_or_else(|| io::Error::new(io::ErrorKind::UnexpectedEof, "the daemon closed the connection"))
     }
 
     /// What the daemon sends from here on, after [`Reply::Recording`].

@@ -18,4 +18,4 @@ pub use cell::{LAYOUT, Reading};
 pub use joined::{AHEAD_MAX, Fate, Plug, Room, TAPS_MAX, TapCounts, TapEnd, TapGauge, TapLook, TapState};
 pub use outlet::{Outlet, OutputCounts};
 pub use page::{Page, Reader, WIRES_MAX, Writer};
-pub use register::{InputCounts, Limits, Register};
+pub use register::{InputCounts, Limits, Register, Took};

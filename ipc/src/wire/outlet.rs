@@ -90,6 +90,7 @@ impl Outlet {
     }
 
     /// Whether a message waits for the end of the beat.
+    #[inline]
     pub fn is_staged(&self) -> bool {
         self.staged
     }
@@ -120,7 +121,8 @@ impl Outlet {
         true
     }
 
-    /// Takes in what the inhibitors say.
+    /// Takes in what the inhibitors say. Most outlets have none, so it is kept out of the way.
+    #[inline(never)]
     pub fn look(&mut self, now: Time, gone: impl FnMut(TapEnd)) {
         if self.taps.is_empty() {
             return;
@@ -152,11 +154,13 @@ impl Outlet {
     }
 
     /// The words of the message that waits for the end of the beat, or of the last one that did.
+    #[inline]
     pub fn words(&self) -> &Words {
         &self.words
     }
 
     /// The kind of message on the wire.
+    #[inline]
     pub fn kind(&self) -> Kind {
         self.writer.kind()
     }
@@ -164,6 +168,12 @@ impl Outlet {
     /// The messages of inhibitors that the last [`Outlet::commit`] took in, for those who trace.
     pub fn tap_looks(&self) -> impl Iterator<Item = TapLook<'_>> {
         self.taps.iter().filter_map(Joined::look_taken)
+    }
+
+    /// Whether an inhibitor stands on it.
+    #[inline]
+    pub fn tapped(&self) -> bool {
+        !self.taps.is_empty()
     }
 
     /// What was counted so far.

@@ -68,12 +68,25 @@ pub struct Register {
     arrived: bool,
     /// What became of the existing wire's message at the last look, if there was one: number `seen`.
     looked: Option<Fate>,
+    /// Whether that message is the one after the last that was looked at.
+    next: bool,
     counts: InputCounts,
     /// The message held, with its stamp.
     held: (Time, Words),
 }
 
 const _: () = assert!(std::mem::offset_of!(Register, held) + size_of::<(Time, f64)>() <= 128);
+
+/// What a register took in of its wire at its last look, in a word.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Took {
+    /// Nothing.
+    Nothing,
+    /// The message after the last one that it took in, which was delivered.
+    Next,
+    /// What [`Register::looked`] tells.
+    Other,
+}
 
 /// A message that may be let in: the existing wire's, or that of the k-th tap.
 #[derive(Clone, Copy)]
@@ -98,6 +111,7 @@ impl Register {
             pending: false,
             arrived: false,
             looked: None,
+            next: false,
             counts: InputCounts::default(),
             held: (Time::ZERO, [0.0; WORDS_MAX]),
         }
@@ -257,6 +271,7 @@ impl Register {
     fn newest_original(&mut self, now: Time, incoming: &mut [f64]) -> Option<Time> {
         self.looked = None;
         let (number, stamp) = self.wire.as_ref()?.take_newer(self.seen, incoming)?;
+        self.next = number.wrapping_sub(self.seen) == 1;
         self.seen = number;
         match plausible(stamp, now) {
             Some(stamp) if self.limits.accept(incoming) => {
@@ -311,10 +326,31 @@ impl Register {
         self.arrived
     }
 
+    /// Whether a suppressor stands before it.
+    #[inline]
+    pub fn tapped(&self) -> bool {
+        !self.taps.is_empty()
+    }
+
+    /// What the last [`Register::gather`] took in of the existing wire, in a word, for those who trace.
+    #[inline]
+    pub fn took(&self) -> Took {
+        match self.looked {
+            None => Took::Nothing,
+            Some(Fate::Delivered) if self.next => Took::Next,
+            _ => Took::Other,
+        }
+    }
+
     /// The message of the existing wire that the last [`Register::gather`] took in, by its number, and what
     /// became of it; for those who trace.
     pub fn looked(&self) -> Option<(u64, Fate)> {
         self.looked.map(|fate| (self.seen, fate))
+    }
+
+    /// The number of the last message of the existing wire that was looked at, 0 if there was none.
+    pub fn seen(&self) -> u64 {
+        self.seen
     }
 
     /// The messages of taps that the last [`Register::gather`] took in, for those who trace.

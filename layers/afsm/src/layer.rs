@@ -222,6 +222,9 @@ impl RunningLayer {
 
     /// Looks at every register and tap between two beats; see [`Register::look`].
     pub fn look(&mut self, now: Time) {
+        if let Some(tracer) = &mut self.tracer {
+            tracer.forget();
+        }
         for register in &mut self.registers {
             register.look(now, |end| give_back(&mut self.returned, end));
         }
@@ -240,7 +243,7 @@ impl RunningLayer {
         let outlet = &mut self.outlets[output];
         let wrote = outlet.put(now, words, |end| give_back(&mut self.returned, end));
         if let Some(tracer) = &mut self.tracer {
-            trace_outlet(tracer, output, outlet, Some((wrote, words)));
+            tracer.alone(output, outlet, Some((wrote, words)));
         }
         wrote
     }
@@ -251,46 +254,43 @@ impl RunningLayer {
             tracer.begin(now);
         }
         self.take_up();
-        for &index in &self.order {
-            let Seat {
-                machine,
-                inputs,
-                outputs,
-                reset,
-                ..
-            } = &mut self.seats[index];
-            let registers = &mut self.registers[inputs.clone()];
-            let (reset_line, own) = registers.split_last_mut().expect("every module has a reset line");
-            for register in own.iter_mut() {
-                register.gather(now, |end| give_back(&mut self.returned, end));
-            }
-            if *reset {
-                reset_line.gather(now, |end| give_back(&mut self.returned, end));
-                if reset_line.arrived() {
-                    machine.reset();
-                    own.iter_mut().for_each(Register::clear);
-                    continue;
-                }
-            }
-            machine.step(&mut Beat {
-                now,
-                inputs: own,
-                outputs: &mut self.outlets[outputs.clone()],
-            });
-        }
-        if let Some(tracer) = &mut self.tracer {
-            trace_registers(tracer, &self.registers);
+        let RunningLayer {
+            seats,
+            order,
+            registers,
+            outlets,
+            returned,
+            tracer,
+            ..
+        } = self;
+        let parts = (&order[..], &mut seats[..], &mut registers[..], &mut outlets[..]);
+        match tracer {
+            Some(tracer) => step_all(now, parts, returned, |slot, register| {
+                tracer.register(slot, register)
+            }),
+            None => step_all(now, parts, returned, |_, _| {}),
         }
     }
 
     /// Second half of a beat: writes what was emitted, stamped `now`, unless inhibited.
     pub fn commit(&mut self, now: Time) {
-        for output in 0..self.outlets.len() {
-            self.commit_one(output, now);
+        let (outlets, returned) = (&mut self.outlets, &mut self.returned);
+        let Some(tracer) = &mut self.tracer else {
+            for outlet in outlets {
+                outlet.commit(now, |end| give_back(returned, end));
+            }
+            return;
+        };
+        for (slot, outlet) in outlets.iter_mut().enumerate() {
+            let staged = outlet.is_staged();
+            let wrote = outlet.commit(now, |end| give_back(returned, end));
+            tracer.outlet(slot, outlet, staged, wrote);
         }
-        if let Some(tracer) = &mut self.tracer {
-            tracer.end(now);
+        if tracer.begins_anew() {
+            let outlets = self.outlets.iter().map(|o| (o.counts().emitted, o.kind()));
+            tracer.tell_numbers(self.registers.iter().map(Register::seen), outlets);
         }
+        tracer.end(now);
     }
 
     /// Writes what was emitted on the n-th output, as [`RunningLayer::commit`] does on all of them. Says whether
@@ -300,15 +300,14 @@ impl RunningLayer {
         let staged = outlet.is_staged();
         let wrote = outlet.commit(now, |end| give_back(&mut self.returned, end));
         if let Some(tracer) = &mut self.tracer {
-            let words = *outlet.words();
-            trace_outlet(tracer, output, outlet, staged.then_some((wrote, &words)));
+            tracer.alone(output, outlet, staged.then_some((wrote, outlet.words())));
         }
         wrote
     }
 
     fn obey(&mut self, command: Command) {
         if let Some(tracer) = &mut self.tracer {
-            trace_command(tracer, &command);
+            tracer.command(&command);
         }
         let refused = match command {
             Command::Suppress(input, end) if input < self.registers.len() => {
@@ -350,45 +349,46 @@ impl RunningLayer {
     }
 }
 
-/// Traces what the registers took in at this beat.
-pub fn trace_registers(tracer: &mut Tracer, registers: &[Register]) {
-    for (slot, register) in registers.iter().enumerate() {
-        if let Some((number, fate)) = register.looked() {
-            tracer.saw(slot, number, fate);
-        }
-        register.tap_looks().for_each(|look| tracer.tap(&look));
-    }
-}
+/// What a layer steps: the order, the modules, their registers and outlets.
+type Parts<'l> = (&'l [usize], &'l mut [Seat], &'l mut [Register], &'l mut [Outlet]);
 
-/// Traces what an outlet's inhibitors said, and what became of its message, if it had one: whether it was written,
-/// and its words.
-fn trace_outlet(tracer: &mut Tracer, slot: usize, outlet: &Outlet, message: Option<(bool, &Words)>) {
-    outlet.tap_looks().for_each(|look| tracer.tap(&look));
-    match message {
-        Some((true, words)) => {
-            tracer.wrote(slot, outlet.counts().emitted, &words[..outlet.kind().words()]);
+/// Gathers every register, which `gathered` then sees while the processor has it at hand, and steps every module.
+#[inline(always)]
+fn step_all(
+    now: Time,
+    (order, seats, registers, outlets): Parts<'_>,
+    returned: &mut Producer<Returned>,
+    mut gathered: impl FnMut(usize, &Register),
+) {
+    for &index in order {
+        let Seat {
+            machine,
+            inputs,
+            outputs,
+            reset,
+            ..
+        } = &mut seats[index];
+        let own = &mut registers[inputs.clone()];
+        let (reset_line, own) = own.split_last_mut().expect("every module has a reset line");
+        for (slot, register) in inputs.clone().zip(own.iter_mut()) {
+            register.gather(now, |end| give_back(returned, end));
+            gathered(slot, register);
         }
-        Some((false, _)) => tracer.dropped(slot),
-        None => {}
+        if *reset {
+            reset_line.gather(now, |end| give_back(returned, end));
+            gathered(inputs.end - 1, reset_line);
+            if reset_line.arrived() {
+                machine.reset();
+                own.iter_mut().for_each(Register::clear);
+                continue;
+            }
+        }
+        machine.step(&mut Beat {
+            now,
+            inputs: own,
+            outputs: &mut outlets[outputs.clone()],
+        });
     }
-}
-
-fn trace_command(tracer: &mut Tracer, command: &Command) {
-    let (slot, end, how) = match command {
-        Command::Suppress(slot, end) => (slot, end, How::Suppress),
-        Command::Inhibit(slot, end) => (slot, end, How::Inhibit),
-        Command::Release(plug) => return tracer.released(*plug),
-        // Only a layer of a process of its own is connected anew, and nobody traces it.
-        Command::Connect(..) => return,
-    };
-    tracer.joined(
-        *slot,
-        end.gauge.number(),
-        how,
-        end.level,
-        end.plug,
-        end.time_constant,
-    );
 }
 
 /// Hands a tap to the thread that may drop it.

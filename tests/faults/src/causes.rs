@@ -4,11 +4,10 @@
 
 use rustix::process::Signal;
 
-use crate::inside::Break;
 use crate::outcome::Expected;
 use crate::rogue::Behaviour;
 use crate::trial::Trial;
-use crate::{host, layers, lives};
+use crate::{host, layers, lives, stepped};
 
 /// A fault.
 pub(crate) struct Cause {
@@ -22,6 +21,8 @@ pub(crate) struct Cause {
     pub(crate) bound: &'static str,
     /// Whether it needs shared memory of its own.
     pub(crate) own_memory: bool,
+    /// Cores that a real-time thread of it keeps busy: none or one.
+    pub(crate) cores: usize,
     /// Injects it once.
     pub(crate) inject: fn(&mut Trial) -> Result<(), String>,
 }
@@ -35,6 +36,7 @@ const fn goes_on(name: &'static str, about: &'static str, inject: Inject) -> Cau
         expected: Expected::GoesOn,
         bound: "",
         own_memory: false,
+        cores: 0,
         inject,
     }
 }
@@ -46,8 +48,13 @@ const fn halts(name: &'static str, about: &'static str, bound: &'static str, inj
         expected: Expected::Halt,
         bound,
         own_memory: false,
+        cores: 0,
         inject,
     }
+}
+
+const fn keeping_a_core(cause: Cause) -> Cause {
+    Cause { cores: 1, ..cause }
 }
 
 const APART: &str = "the body's stale limit + 1 period";
@@ -119,51 +126,56 @@ pub(crate) static CAUSES: &[Cause] = &[
         "the body's stale limit + 2 periods",
         lives::panics_inside,
     ),
-    halts(
+    keeping_a_core(halts(
         "inside-loop",
         "a vital layer inside the daemon never returns",
         "50 ms of silence + 2 periods",
-        |t| lives::breaks_inside(t, Break::Loop, "vital layer late", lives::VITAL_LATE),
-    ),
-    halts(
+        lives::loops_inside,
+    )),
+    keeping_a_core(halts(
         "inside-overrun",
         "a layer with `overrun = \"halt\"` overruns",
         "2 of its periods + 2 periods",
-        |t| lives::breaks_inside(t, Break::Overrun, "overrun", lives::OVERRUN_LATE),
-    ),
-    goes_on(
+        lives::overruns_inside,
+    )),
+    keeping_a_core(goes_on(
         "inside-skip",
         "a layer with `overrun = \"skip\"` overruns",
         lives::skips_inside,
-    ),
-    halts(
+    )),
+    keeping_a_core(halts(
         "body-kill",
         "the body's process dies, another comes",
         "the pulse's stale limit + 2 periods",
         |t| lives::body_lost(t, Signal::KILL),
-    ),
-    halts(
+    )),
+    keeping_a_core(halts(
         "body-stop",
         "the body's process freezes and thaws",
         "the pulse's stale limit + 2 periods",
         |t| lives::body_lost(t, Signal::STOP),
-    ),
-    halts(
+    )),
+    keeping_a_core(halts(
         "emergency-stop",
         "an operator's emergency stop",
         "2 periods + 1 until the caller is heard",
         lives::emergency_stop,
-    ),
-    halts(
+    )),
+    keeping_a_core(halts(
         "sigterm",
         "SIGTERM in the middle of a long step",
         "20 ms + 2 periods",
         lives::ends_in_mid_step,
-    ),
+    )),
     goes_on(
         "second-daemon",
         "a second daemon of the same name",
         host::second_daemon,
+    ),
+    goes_on(
+        "clock-step",
+        "the realtime clock is stepped ten times a second",
+        stepped::clock_stepped,
     ),
     goes_on(
         "descriptors",

@@ -11,8 +11,8 @@ use ipc::clock;
 use ipc::control::{Connection, Reply, Request, Versions};
 use rustix::process::{Pid, Resource, Rlimit, Signal, prlimit};
 
-use crate::lives::{at_a_free_moment, body_halts};
-use crate::trial::{BODY, CREATURE, LIFE_S, Trial, leave_body};
+use crate::lives::{at_a_free_moment, body_halts_about};
+use crate::trial::{BODY, CREATURE, Trial, leave_body};
 
 /// File descriptors that a daemon has which is to use them up: a few more than it needs to start.
 const DESCRIPTORS: &str = "64";
@@ -33,11 +33,15 @@ pub(crate) fn second_daemon(trial: &mut Trial) -> Result<(), String> {
 
 /// Callers take every file descriptor that the daemon may have.
 pub(crate) fn descriptors_used_up(trial: &mut Trial) -> Result<(), String> {
-    let script =
-        format!("ulimit -n {DESCRIPTORS}; exec \"$0\" --name {CREATURE} --headless --seconds {LIFE_S}");
+    let life_s = &trial.life_s;
+    let script = format!(
+        "ulimit -n {DESCRIPTORS}; exec \"$0\" --name {CREATURE} --headless --body {BODY} --seconds {life_s}"
+    );
     let program = trial.programs.subsumed.to_string_lossy().into_owned();
+    let mut body = trial.body()?;
     let daemon = trial.stage.start("sh", &["-c", &script, &program])?;
     trial.wait_until_free(&daemon)?;
+    trial.look_at_status()?;
     trial.goes_on_with(daemon, |trial| {
         let callers: Vec<UnixStream> = (0..200)
             .map_while(|_| UnixStream::connect(trial.stage.socket(CREATURE)).ok())
@@ -50,20 +54,24 @@ pub(crate) fn descriptors_used_up(trial: &mut Trial) -> Result<(), String> {
         // The places come free again, and a layer finds one.
         trial.wait_until_answered()?;
         trial.wander()?.leave()
-    })
+    })?;
+    leave_body(trial, &mut body);
+    Ok(())
 }
 
 /// Callers that come while the daemon is at its limit: each is a conversation that it has to find room for.
 const CALLERS: usize = 40;
 
-/// Memory that is left to the daemon: what its recorder takes in a minute, less than forty callers take.
-const LEFT: u64 = 12 << 20;
+/// Memory that is left to the daemon: less than it keeps for itself, so that nobody is let in; or a little more, so that
+/// some are, until there is no room for the next one's thread.
+const LEFT: [u64; 2] = [6 << 20, 12 << 20];
 
 /// The daemon may have little more memory than it has: there are no threads for all callers.
 pub(crate) fn memory_limited(trial: &mut Trial) -> Result<(), String> {
     trial.goes_on(|trial| {
         let daemon = trial.daemon_pid()?;
-        limit(daemon, Some(address_space(daemon)? + LEFT))?;
+        let left = LEFT[(trial.draw() % 2) as usize];
+        limit(daemon, Some(address_space(daemon)? + left))?;
         let callers: Vec<Connection> = (0..CALLERS)
             .filter_map(|_| greeting(trial.stage.socket(CREATURE)).ok())
             .collect();
@@ -76,8 +84,8 @@ pub(crate) fn memory_limited(trial: &mut Trial) -> Result<(), String> {
             matches!(answer, Reply::Welcome { .. }).then_some(())
         });
         let answered = answered.count();
-        trial.outcome.expect(answered < CALLERS, || {
-            format!("all {answered} callers were answered: the limit is none")
+        trial.outcome.expect(answered == 0 || left > LEFT[0], || {
+            format!("{answered} callers were answered with {left} bytes left: the limit is none")
         });
         limit(daemon, None)?;
         // Refused or kept waiting, it is gone; there is room again for the next one.
@@ -91,32 +99,31 @@ pub(crate) fn memory_limited(trial: &mut Trial) -> Result<(), String> {
 pub(crate) fn memory_used_up(trial: &mut Trial) -> Result<(), String> {
     let mut body = trial.body()?;
     let mut daemon = trial.daemon(&["--body", BODY])?;
-    let (observer, _) = at_a_free_moment(trial)?;
-    let pid = trial.daemon_pid()?;
-    let limited = clock::monotonic();
-    limit(pid, Some(0))?;
-    let (began, mut alive) = (Instant::now(), clock::monotonic());
-    let mut callers = Vec::new();
-    while !daemon.has_ended() && began.elapsed() < stage::PATIENCE {
-        alive = clock::monotonic();
-        // Each wants a place, and a thread.
-        callers.extend(greeting(trial.stage.socket(CREATURE)));
-        std::thread::sleep(Duration::from_millis(1));
-    }
-    drop(callers);
-    body_halts(trial, &observer, limited)?;
-    // A process that ends lets go of its socket before it is seen to have ended: the gate may close before.
-    let (closed, bound) = (
-        observer.closed_after(limited),
-        trial.limits.stale + trial.limits.period,
-    );
-    trial.halted(alive, closed.map(|at| at.max(alive)), bound);
-    let status = daemon.end()?;
-    trial
-        .outcome
-        .expect(!status.success(), || format!("without memory: {status}"));
-    drop(observer);
-    trial.restart()?;
+    trial.in_rounds(|trial| {
+        let (observer, _) = at_a_free_moment(trial)?;
+        let pid = trial.daemon_pid()?;
+        let limited = clock::monotonic();
+        limit(pid, Some(0))?;
+        let (began, mut alive) = (Instant::now(), clock::monotonic());
+        let mut callers = Vec::new();
+        while !daemon.has_ended() && began.elapsed() < stage::PATIENCE {
+            alive = clock::monotonic();
+            // Each wants a place, and a thread.
+            callers.extend(greeting(trial.stage.socket(CREATURE)));
+            std::thread::sleep(Duration::from_millis(1));
+        }
+        drop(callers);
+        // A process that ends lets go of its socket before it is seen to have ended: the gate may close before.
+        body_halts_about(trial, &observer, limited, alive);
+        let status = daemon.end()?;
+        trial
+            .outcome
+            .expect(!status.success(), || format!("without memory: {status}"));
+        drop(observer);
+        daemon = trial.restart()?;
+        Ok(())
+    })?;
+    trial.end(&mut daemon)?;
     leave_body(trial, &mut body);
     Ok(())
 }
@@ -183,8 +190,10 @@ pub(crate) fn memory_full(trial: &mut Trial) -> Result<(), String> {
                 layer.said()
             )
         });
-        // Long enough for everybody to have wanted to clean up after the dead.
-        std::thread::sleep(Duration::from_millis(2500));
+        if trial.outcome.injections == 1 {
+            // Long enough for everybody to have wanted to clean up after the dead.
+            std::thread::sleep(Duration::from_millis(2500));
+        }
         std::fs::remove_file(ballast).map_err(|e| format!("{}: {e}", ballast.display()))?;
         trial.wander()?.leave()
     })

@@ -155,6 +155,7 @@ fn spin(span: Span) {
 /// # Errors
 /// What the host refuses.
 pub(crate) fn run(how: Break, seconds: f64) -> Result<(), String> {
+    daemon::alloc::share_one_heap();
     let (leave, said) = (Arc::new(AtomicBool::new(false)), Arc::new(AtomicBool::new(false)));
     for (signal, flag) in [
         (signal_hook::consts::SIGTERM, &leave),
@@ -224,7 +225,7 @@ fn say(line: &str) {
 /// Says on standard error when the module broke, and when each cause of a halt began.
 #[derive(Debug, Default)]
 struct Teller {
-    broke: bool,
+    broke: u64,
     told: Vec<(&'static str, Time)>,
 }
 
@@ -236,8 +237,8 @@ impl Teller {
 
     fn tell(&mut self, halt: &daemon::halt::HaltChannel) {
         let broke = BROKE.load(Ordering::Relaxed);
-        if broke != 0 && !self.broke {
-            self.broke = true;
+        if broke != self.broke {
+            self.broke = broke;
             say(&format!("fault {broke}"));
         }
         for counted in halt.counts() {

@@ -1,7 +1,7 @@
-//! Kept outcomes: a file with one line for each injection, so that a run of days can be stopped, killed and gone on
+//! Kept outcomes: a file with one line for each trial, so that a run of days can be stopped, killed and gone on
 //! with, and runs of several machines put together by joining their files.
 //!
-//! Must never forget an injection that was not as specified, nor count one twice.
+//! Must never forget a trial that was not as specified, nor count one twice.
 
 use std::collections::BTreeMap;
 use std::fs::{File, OpenOptions};
@@ -28,7 +28,7 @@ pub(crate) struct Kept {
 
 impl Kept {
     /// Those of the file at `path`, which is made if it is not there. A last line without its end was being written
-    /// when somebody pulled the plug: it is dropped, and that injection is made again.
+    /// when somebody pulled the plug: it is dropped, and that trial is made again.
     ///
     /// # Errors
     /// In words, with the line: it cannot be read, or holds something else. Nothing is written then.
@@ -54,12 +54,12 @@ impl Kept {
         Ok(Kept { file, known })
     }
 
-    /// What came of an injection, if it was made.
+    /// What came of a trial, if it was made.
     pub(crate) fn outcome(&self, cause: &str, seed: u64) -> Option<&Outcome> {
         self.known.get(&(cause.to_owned(), seed))
     }
 
-    /// Adds what came of an injection.
+    /// Adds what came of a trial.
     ///
     /// # Errors
     /// When the file cannot be written.
@@ -92,12 +92,12 @@ fn read(text: &str) -> Result<BTreeMap<(String, u64), Outcome>, String> {
     for (number, line) in text.lines().enumerate() {
         let at = number + 1;
         let line: Line =
-            serde_json::from_str(line).map_err(|e| format!("{at}: expected an injection's outcome: {e}"))?;
+            serde_json::from_str(line).map_err(|e| format!("{at}: expected a trial's outcome: {e}"))?;
         if causes::find(&line.cause).is_none() {
             return Err(format!("{at}: no cause {:?}; see --list", line.cause));
         }
         let key = (line.cause, line.seed);
-        // The same injection made twice, on two machines say: once it was broken, it is.
+        // The same trial made twice, on two machines say: once it was broken, it is.
         if known
             .get(&key)
             .is_none_or(|before: &Outcome| before.broken.is_empty())
@@ -133,7 +133,7 @@ mod tests {
         kept.add(name, 2, Outcome::default()).expect("written");
         assert_eq!(Kept::open(Some(&path)).expect("whole again").of(name).count(), 2);
         std::fs::write(&path, "{}\n").expect("something else");
-        assert!(Kept::open(Some(&path)).is_err_and(|e| e.contains(":1: expected an injection's outcome")));
+        assert!(Kept::open(Some(&path)).is_err_and(|e| e.contains(":1: expected a trial's outcome")));
         assert_eq!(std::fs::read_to_string(&path).expect("read"), "{}\n");
         std::fs::remove_file(&path).expect("there");
     }

@@ -20,7 +20,7 @@ pub(crate) fn dies(trial: &mut Trial, signal: Signal) -> Result<(), String> {
         let mut wander = trial.wander()?;
         trial.wait_a_while();
         wander.end_by(signal)?;
-        told(&trial.stage, &["layer wander", "died"])
+        trial.told(&["layer wander", "died"])
     })
 }
 
@@ -45,7 +45,7 @@ pub(crate) fn ends(trial: &mut Trial, how: Behaviour) -> Result<(), String> {
         trial
             .outcome
             .expect(!status.success(), || format!("the rogue ended with {status}"));
-        told(&trial.stage, &[&format!("layer {}", how.name()), "died"])
+        trial.told(&[&format!("layer {}", how.name()), "died"])
     })
 }
 
@@ -56,7 +56,7 @@ pub(crate) fn slow(trial: &mut Trial) -> Result<(), String> {
         wait_for("its tap holds", || tap_of(&trial.stage, "slow")["holds"] == true)?;
         rogue.signal(Signal::KILL);
         rogue.end()?;
-        told(&trial.stage, &["layer slow", "died"])?;
+        trial.told(&["layer slow", "died"])?;
         // Gone with its layer; nothing of it holds any longer.
         wait_for("its tap is gone", || tap_of(&trial.stage, "slow").is_null())
     })
@@ -65,10 +65,12 @@ pub(crate) fn slow(trial: &mut Trial) -> Result<(), String> {
 /// A layer that floods its tap is let go.
 pub(crate) fn floods(trial: &mut Trial) -> Result<(), String> {
     trial.goes_on(|trial| {
-        let mut rogue = trial.rogue(Behaviour::Flood, "flood")?;
+        // Let go, a layer is not let in again for a while: another name each time.
+        let name = format!("flood{}", trial.outcome.injections);
+        let mut rogue = trial.rogue(Behaviour::Flood, &name)?;
         rogue.says("let go", 1)?;
         rogue.end()?;
-        told(&trial.stage, &["policy breach: layer flood floods"])
+        trial.told(&[&format!("policy breach: layer {name} floods")])
     })
 }
 
@@ -84,7 +86,7 @@ pub(crate) fn garbage(trial: &mut Trial) -> Result<(), String> {
         trial.outcome.expect(delivered == Some(0), || {
             format!("{delivered:?} messages were delivered")
         });
-        told(&trial.stage, &["layer garbage", "messages that were none"])?;
+        trial.told(&["layer garbage", "messages that were none"])?;
         rogue.leave()
     })
 }
@@ -93,12 +95,13 @@ pub(crate) fn garbage(trial: &mut Trial) -> Result<(), String> {
 /// torn messages, stamps of all times.
 pub(crate) fn scribbles(trial: &mut Trial) -> Result<(), String> {
     trial.goes_on(|trial| {
-        let mut rogue = trial.rogue(Behaviour::Scribble, "scribble")?;
+        let name = format!("scribble{}", trial.outcome.injections);
+        let mut rogue = trial.rogue(Behaviour::Scribble, &name)?;
         rogue.says("attached", 1)?;
         std::thread::sleep(Duration::from_millis(400));
         rogue.end_by(Signal::KILL)?;
         // It died, or was let go before: wrong numbers look like a flood.
-        told(&trial.stage, &["layer scribble (pid", "its taps run out"])
+        trial.told(&[&format!("layer {name} (pid"), "its taps run out"])
     })
 }
 
@@ -177,13 +180,6 @@ fn nonsense(trial: &mut Trial, round: usize) -> Vec<u8> {
         14..18 => [vec![b'['; 100_000], vec![b'\n']].concat(),
         _ => Vec::new(),
     }
-}
-
-/// Waits until an event holds all of `parts`.
-fn told(stage: &Stage, parts: &[&str]) -> Result<(), String> {
-    wait_for(&format!("an event says {parts:?}"), || {
-        stage.happened(CREATURE, parts)
-    })
 }
 
 /// The tap of layer `name` as the status shows it; null if there is none.

@@ -12,6 +12,7 @@ mod outcome;
 mod programs;
 mod rogue;
 mod soak;
+mod stepped;
 mod suite;
 mod table;
 mod trial;
@@ -38,21 +39,28 @@ static ALLOCATOR: daemon::alloc::Counting = daemon::alloc::Counting;
     after_help = "Examples:\n  \
     faults                              every cause a few times, in less than two minutes\n  \
     faults --cause daemon-kill          one cause\n  \
-    faults --seeds 1000 --keep runs.jsonl --markdown\n  \
-                                        the long run, half a day; stopped or killed, it goes on where it was\n  \
+    faults --seeds 40 --rounds 25 --keep runs.jsonl --markdown\n  \
+                                        the long run, 1,000 injections a cause, hours; stopped or killed, it goes on where it was\n  \
     faults soak --minutes 60            what grows, and what breaks once in a thousand times\n\n\
     Status: 0 when all is as specified; 1 when a halt was missed or a bound broken; 2 for bad input."
 )]
 struct Options {
-    /// Injections of each cause
+    /// Trials of each cause
     #[arg(long, default_value_t = 2, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=100_000))]
     seeds: u64,
+    /// Injections of a trial, one after the other on one stage: the same body, and the same daemon where it lives
+    #[arg(long, default_value_t = 1, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1000))]
+    rounds: u64,
     /// The first seed
     #[arg(long, default_value_t = 1, value_name = "N")]
     from: u64,
-    /// Keep the outcome of every injection in this file, and go on where it ends
+    /// Keep the outcome of every trial in this file, and go on where it ends
     #[arg(long, value_name = "FILE")]
     keep: Option<PathBuf>,
+    /// Trials at once, each on a stage of its own: each other's load, so some times are longer. Of those
+    /// that keep a core busy, one less than there are cores
+    #[arg(long, default_value_t = 1, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=16))]
+    jobs: u8,
     /// Only these causes (see --list)
     #[arg(long, num_args = 1.., value_name = "NAME")]
     cause: Vec<String>,
@@ -82,12 +90,14 @@ enum Part {
         #[arg(long)]
         seed: u64,
     },
-    /// One injection, on the stage that the environment names
+    /// One trial, on the stage that the environment names
     #[command(hide = true)]
     Inject {
         cause: String,
         #[arg(long)]
         seed: u64,
+        #[arg(long)]
+        rounds: u64,
     },
     /// A layer process that misbehaves
     #[command(hide = true)]
@@ -111,7 +121,7 @@ enum Part {
 fn main() -> ExitCode {
     let options = Options::parse();
     let played = match &options.part {
-        Some(Part::Inject { cause, seed }) => inject(cause, *seed),
+        Some(Part::Inject { cause, seed, rounds }) => inject(cause, *seed, *rounds),
         Some(Part::Rogue {
             how,
             name,
@@ -136,10 +146,10 @@ fn main() -> ExitCode {
     }
 }
 
-/// One injection; its outcome on standard output, whatever it is.
-fn inject(name: &str, seed: u64) -> Result<(), String> {
+/// One trial; its outcome on standard output, whatever it is.
+fn inject(name: &str, seed: u64, rounds: u64) -> Result<(), String> {
     let cause = causes::find(name).ok_or_else(|| format!("no cause {name:?}"))?;
-    let mut trial = Trial::new(seed)?;
+    let mut trial = Trial::new(seed, rounds)?;
     let tried = (cause.inject)(&mut trial);
     let mut outcome = std::mem::take(&mut trial.outcome);
     match tried {
@@ -204,44 +214,20 @@ fn chosen(names: &[String]) -> Result<Vec<&'static Cause>, String> {
         .collect())
 }
 
-/// Seeds are gone through together: a run that is stopped early has tried every cause about as often.
+/// What is not yet in the file is tried, and the table of all of it made.
 fn try_all(options: &Options, programs: &Programs, chosen: &[&'static Cause]) -> Result<Table, String> {
-    let interrupted = suite::on_interrupt()?;
     let mut kept = Kept::open(options.keep.as_deref())?;
     let seeds = options.from..options.from.saturating_add(options.seeds);
-    let wanted: Vec<(u64, &Cause)> = seeds
+    // Seeds are gone through together: a run that is stopped early has tried every cause about as often.
+    let wanted = seeds
         .flat_map(|seed| chosen.iter().map(move |&cause| (seed, cause)))
         .filter(|(seed, cause)| kept.outcome(cause.name, *seed).is_none())
         .collect();
-    let began = std::time::Instant::now();
-    for (number, (seed, cause)) in wanted.iter().enumerate() {
-        if interrupted.load(std::sync::atomic::Ordering::Relaxed) {
-            break;
-        }
-        let skipped = kept.of(cause.name).any(|(_, o)| o.skipped.is_some());
-        if skipped {
-            continue;
-        }
-        let outcome = suite::inject(programs, cause, *seed, number + 1)?;
-        let result = if outcome.broken.is_empty() {
-            "as specified"
-        } else {
-            "NOT AS SPECIFIED"
-        };
-        let left = began.elapsed() / (number as u32 + 1) * (wanted.len() - number - 1) as u32;
-        eprintln!(
-            "{:6} of {}, {}:{:02} left  {:17} --seed {seed}: {result}",
-            number + 1,
-            wanted.len(),
-            left.as_secs() / 60,
-            left.as_secs() % 60,
-            cause.name
-        );
-        for broken in &outcome.broken {
-            eprintln!("{} --seed {seed}: {broken}", cause.name);
-        }
-        kept.add(cause.name, *seed, outcome)?;
-    }
+    let plan = suite::Plan {
+        rounds: options.rounds,
+        jobs: options.jobs.into(),
+    };
+    suite::inject_all(programs, wanted, &plan, &mut kept)?;
     let rows = chosen.iter().map(|&cause| Row {
         cause,
         outcomes: kept

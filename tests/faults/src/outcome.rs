@@ -1,4 +1,4 @@
-//! Outcome: what came of one injection, and whether that is as specified.
+//! Outcome: what came of one injection, or of several in one life of the daemon, and whether that is as specified.
 //!
 //! Must never excuse anything but a host that was seen to hold real-time threads up.
 
@@ -20,12 +20,16 @@ pub(crate) enum Expected {
     GoesOn,
 }
 
-/// What came of one injection.
+/// What came of a trial.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(crate) struct Outcome {
-    /// From the fault to halted actuators; none when they were not halted.
-    pub(crate) halted: Option<Span>,
-    /// How long that may take.
+    /// How often the fault was injected.
+    pub(crate) injections: u64,
+    /// From each fault that was to halt the actuators to their halt.
+    pub(crate) halts: Vec<Span>,
+    /// Faults that were to halt them and did not.
+    pub(crate) missed: u64,
+    /// How long a halt may take.
     pub(crate) bound: Option<Span>,
     /// The watchdog's or the body's period, in which it is counted.
     pub(crate) period: Option<Span>,
@@ -84,19 +88,34 @@ impl Outcome {
         }
     }
 
-    /// Judges the time to the halt, once all of it is known.
+    /// Notes that the actuators halted so long after a fault, or not at all; the host held everybody up by `late`
+    /// meanwhile.
+    pub(crate) fn halted(&mut self, halted: Option<Span>, bound: Span, late: Span) {
+        self.bound = Some(bound);
+        self.host_late = self.host_late.max(late);
+        let Some(halted) = halted else {
+            self.missed += 1;
+            self.broken.push("MISSED: the body was not halted".into());
+            return;
+        };
+        self.halts.push(halted);
+        // What the host took from everybody, it took from the halt.
+        self.expect(halted.0 <= bound.0 + late.0, || {
+            format!("halted after {halted}, bound {bound}, the host late by {late}")
+        });
+    }
+
+    /// How many injections were not as specified, as far as that can be told apart.
+    pub(crate) fn not_as_specified(&self) -> u64 {
+        (self.broken.len() as u64).min(self.injections.max(1))
+    }
+
+    /// Judges all of it, once it is over.
     pub(crate) fn judge(&mut self, expected: Expected) {
-        let late = self.host_late;
-        match (expected, self.halted, self.bound) {
-            (Expected::Halt, None, _) => self.broken.push("MISSED: the body was not halted".into()),
-            (Expected::Halt, Some(halted), Some(bound)) => {
-                // What the host took from everybody, it took from the halt.
-                self.expect(halted.0 <= bound.0 + late.0, || {
-                    format!("halted after {halted}, bound {bound}, the host late by {late}")
-                });
-            }
-            _ => {}
-        }
+        let (seen, injections) = (self.halts.len() as u64 + self.missed, self.injections);
+        self.expect(expected == Expected::GoesOn || seen == injections, || {
+            format!("{injections} faults, {seen} looks at what came of them")
+        });
         let contacts = self.contacts;
         self.expect(contacts == 0, || {
             format!("{contacts} contacts caused by the robot")
@@ -147,30 +166,35 @@ mod tests {
 
     #[test]
     fn a_missed_halt_a_late_one_and_a_contact_break() {
-        let mut missed = Outcome::default();
-        missed.judge(Expected::Halt);
-        assert!(missed.broken[0].starts_with("MISSED"));
-        let late = Outcome {
-            halted: Some(Span::millis(61)),
-            bound: Some(Span::millis(60)),
-            ..Outcome::default()
-        };
-        let judged = |mut outcome: Outcome| {
+        let broken = |halted: Option<u64>, late: u64| {
+            let mut outcome = Outcome {
+                injections: 1,
+                ..Outcome::default()
+            };
+            outcome.halted(halted.map(Span::millis), Span::millis(60), Span::millis(late));
             outcome.judge(Expected::Halt);
-            outcome.broken.len()
+            outcome.broken
         };
-        assert_eq!(judged(late.clone()), 1);
-        let held_up = Outcome {
-            host_late: Span::millis(2),
-            ..late.clone()
-        };
-        assert_eq!(judged(held_up), 0);
-        let hit = Outcome {
-            halted: Some(Span::millis(1)),
+        assert!(broken(None, 0)[0].starts_with("MISSED"));
+        assert_eq!(broken(Some(61), 0).len(), 1);
+        assert_eq!(broken(Some(61), 2).len(), 0);
+        let mut hit = Outcome {
             contacts: 1,
             allocations: 1,
-            ..late
+            ..Outcome::default()
         };
-        assert_eq!(judged(hit), 2);
+        hit.judge(Expected::GoesOn);
+        assert_eq!(hit.broken.len(), 2);
+    }
+
+    #[test]
+    fn a_fault_that_nobody_looked_at_breaks() {
+        let mut outcome = Outcome {
+            injections: 2,
+            ..Outcome::default()
+        };
+        outcome.halted(Some(Span::millis(1)), Span::millis(60), Span::ZERO);
+        outcome.judge(Expected::Halt);
+        assert_eq!(outcome.not_as_specified(), 1);
     }
 }

@@ -12,7 +12,7 @@ use crate::outcome::{Expected, Outcome};
 pub(crate) struct Row {
     /// The cause.
     pub(crate) cause: &'static Cause,
-    /// What came of each injection, with its seed.
+    /// What came of each trial, with its seed.
     pub(crate) outcomes: Vec<(u64, Outcome)>,
 }
 
@@ -39,15 +39,24 @@ impl Row {
             .filter(|o| o.skipped.is_none())
     }
 
+    /// How often the fault was injected.
+    fn injections(&self) -> u64 {
+        self.tried().map(|o| o.injections).sum()
+    }
+
     /// Injections of which something was not as specified.
-    fn broken(&self) -> usize {
-        self.tried().filter(|o| !o.broken.is_empty()).count()
+    fn broken(&self) -> u64 {
+        self.tried().map(Outcome::not_as_specified).sum()
     }
 
     /// Times from fault to halt, in periods, shortest first.
     fn periods(&self) -> Vec<f64> {
-        let times = self.tried().filter_map(|o| Some(ratio(o.halted?, o.period?)));
-        let mut times: Vec<f64> = times.collect();
+        let of_one = |o: &Outcome| {
+            let period = o.period;
+            let halts = o.halts.clone().into_iter();
+            halts.filter_map(move |halted| Some(ratio(halted, period?)))
+        };
+        let mut times: Vec<f64> = self.tried().flat_map(of_one).collect();
         times.sort_by(f64::total_cmp);
         times
     }
@@ -57,7 +66,7 @@ impl Row {
     }
 
     fn cells(&self) -> [String; 9] {
-        let tried = self.tried().count();
+        let tried = self.injections();
         let times = self.periods();
         let at = |q: f64| quantile(&times, q).map_or("–".into(), |t| format!("{t:.1}"));
         let skipped = self.outcomes.iter().find_map(|(_, o)| o.skipped.clone());
@@ -90,21 +99,21 @@ impl Row {
         let longest = |of: fn(&Outcome) -> Option<Span>| self.tried().filter_map(of).max();
         json!({
             "cause": self.cause.name, "about": self.cause.about, "expected": self.cause.expected,
-            "tried": self.tried().count(), "broken": self.broken(),
+            "tried": self.injections(), "broken": self.broken(),
             "halt_periods": { "min": at(0.0), "p50": at(0.5), "p99": at(0.99), "max": at(1.0) },
             "bound_periods": self.bound(), "bound": self.cause.bound,
             "contacts": sum(|o| o.contacts), "allocations": sum(|o| o.allocations),
             "host_halts": sum(|o| o.host_halts),
             "host_late_max_ms": longest(|o| Some(o.host_late)).map(Span::as_millis_f64),
             "restart_max_ms": longest(|o| o.restart).map(Span::as_millis_f64),
-            "injections": self.outcomes.iter().map(|(seed, o)| json!({ "seed": seed, "outcome": o })).collect::<Vec<_>>(),
+            "trials": self.outcomes.iter().map(|(seed, o)| json!({ "seed": seed, "outcome": o })).collect::<Vec<_>>(),
         })
     }
 }
 
 impl Table {
     /// How many injections were not as specified.
-    pub(crate) fn broken(&self) -> usize {
+    pub(crate) fn broken(&self) -> u64 {
         self.0.iter().map(Row::broken).sum()
     }
 
@@ -137,7 +146,7 @@ impl Table {
         text + "\n" + &self.summary()
     }
 
-    /// For programs, with every injection.
+    /// For programs, with every trial.
     pub(crate) fn json(&self) -> Value {
         json!({ "broken": self.broken(), "causes": self.0.iter().map(Row::json).collect::<Vec<_>>() })
     }
@@ -154,14 +163,13 @@ impl Table {
         let all = || self.0.iter().flat_map(Row::tried);
         let sum = |of: fn(&Outcome) -> u64| all().map(of).sum::<u64>();
         let ms = |span: Option<Span>| span.map_or("none".into(), |s| format!("{:.0} ms", s.as_millis_f64()));
-        let missed = self.0.iter().filter(|r| r.cause.expected == Expected::Halt);
-        let missed = missed.flat_map(Row::tried).filter(|o| o.halted.is_none()).count();
         let mut text = format!(
-            "{} injections, {} not as specified, {missed} halts missed. Contacts caused by the robot: {}. \
+            "{} injections, {} not as specified, {} halts missed. Contacts caused by the robot: {}. \
              Allocations on real-time threads: {}. Longest from a start after a death to a free body: {}. \
              Longest lateness of the host: {}; halts for that alone: {}.\n",
-            all().count(),
+            sum(|o| o.injections),
             self.broken(),
+            sum(|o| o.missed),
             sum(|o| o.contacts),
             sum(|o| o.allocations),
             ms(all().filter_map(|o| o.restart).max()),
@@ -201,7 +209,8 @@ mod tests {
             .find(|c| c.expected == Expected::Halt)
             .expect("some halt");
         let outcome = |ms: u64, broken: Vec<String>| Outcome {
-            halted: Some(Span::millis(ms)),
+            injections: 1,
+            halts: vec![Span::millis(ms)],
             bound: Some(Span::millis(220)),
             period: Some(Span::millis(20)),
             broken,

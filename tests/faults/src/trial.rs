@@ -1,13 +1,15 @@
-//! A trial: one injection on its stage, with what the seed decides and what came of it.
+//! A trial: one fault, injected once or in several rounds on one stage, with what the seed decides and what came of it.
 //!
 //! Must never inject before the body is free: a fault that is not needed for the halt shows nothing.
 
 use ipc::clock::{self, Span, Time};
+use ipc::control::{Event, Reply, Request};
 use rustix::process::{Pid, Signal, kill_process};
 use serde_json::Value;
 use stage::{Player, Stage, wait_for};
 
 use crate::draws::Draws;
+use crate::inside;
 use crate::observe::Observer;
 use crate::outcome::Outcome;
 use crate::programs::Programs;
@@ -19,8 +21,10 @@ pub(crate) const CREATURE: &str = "tried";
 /// Name of its body, where that is a process of its own.
 pub(crate) const BODY: &str = "hall";
 
-/// How long a process of a stage lives at most: it ends by itself should nobody be left to end it.
-pub(crate) const LIFE_S: &str = "180";
+/// How long a process of a stage lives at most, and as much again for every round: it ends by itself should nobody be
+/// left to end it.
+const LIFE_S: u64 = 180;
+const LIFE_MORE_S: u64 = 10;
 
 /// What of Allen's file and body a bound is made of.
 #[derive(Clone, Copy, Debug)]
@@ -31,7 +35,7 @@ pub(crate) struct Limits {
     pub(crate) stale: Span,
 }
 
-/// One injection.
+/// A trial.
 #[derive(Debug)]
 pub(crate) struct Trial {
     pub(crate) programs: Programs,
@@ -39,8 +43,12 @@ pub(crate) struct Trial {
     pub(crate) outcome: Outcome,
     pub(crate) limits: Limits,
     random: Draws,
+    /// How often the fault is injected.
+    rounds: u64,
+    /// The newest event before the round.
+    noted: u64,
     /// How long a process lives at most, in seconds.
-    life_s: String,
+    pub(crate) life_s: String,
 }
 
 impl Trial {
@@ -48,7 +56,7 @@ impl Trial {
     ///
     /// # Errors
     /// When there is none, or a program is missing.
-    pub(crate) fn new(seed: u64) -> Result<Trial, String> {
+    pub(crate) fn new(seed: u64, rounds: u64) -> Result<Trial, String> {
         let kinds = daemon::machine::kinds();
         let source = ipc::wiring::Source::new("allen.toml", allen::CREATURE);
         let creature = ipc::wiring::check::creature(&source, &kinds).map_err(|e| e.to_string())?;
@@ -63,13 +71,15 @@ impl Trial {
                 stale: kind.stale,
             },
             random: Draws(seed),
-            life_s: LIFE_S.into(),
+            rounds,
+            noted: 0,
+            life_s: (LIFE_S + rounds * LIFE_MORE_S).to_string(),
         })
     }
 
     /// The same with processes that live for `seconds` and a while.
     pub(crate) fn living(mut self, seconds: f64) -> Trial {
-        self.life_s = (seconds + 180.0).to_string();
+        self.life_s = (seconds + LIFE_S as f64).to_string();
         self
     }
 
@@ -85,7 +95,7 @@ impl Trial {
     }
 
     /// The daemon, its body free.
-    pub(crate) fn daemon(&self, arguments: &[&str]) -> Result<Player, String> {
+    pub(crate) fn daemon(&mut self, arguments: &[&str]) -> Result<Player, String> {
         let mut all = vec!["--name", CREATURE, "--headless", "--seconds", &self.life_s];
         all.extend(arguments);
         let player = self.stage.start(&self.programs.subsumed, &all)?;
@@ -104,11 +114,17 @@ impl Trial {
 
     /// Level 1 of Allen as a process, attached.
     pub(crate) fn wander(&self) -> Result<Player, String> {
+        self.wander_with(&[])
+    }
+
+    /// The same with further variables.
+    pub(crate) fn wander_with(&self, variables: &[(&str, &str)]) -> Result<Player, String> {
+        let arguments = ["--creature", CREATURE];
         let wander = self
             .stage
-            .start(&self.programs.wander, &["--creature", CREATURE])?;
-        wait_for("wander is attached", || self.stage.has_layer(CREATURE, "wander"))
-            .map_err(|e| format!("{e}; it said {:?}", wander.said()))?;
+            .start_with(&self.programs.wander, &arguments, variables)?;
+        // Its own word: the status may still show one before it, and events be left out where many come and go.
+        wander.says("attached to", 1)?;
         Ok(wander)
     }
 
@@ -119,12 +135,57 @@ impl Trial {
         self.stage.start(&self.programs.ourselves, &arguments)
     }
 
-    /// Waits until the daemon answers and its body is free.
-    pub(crate) fn wait_until_free(&self, daemon: &Player) -> Result<(), String> {
-        wait_for("the body is free", || self.stage.is_free(CREATURE)).map_err(|e| {
+    /// Waits until the daemon answers and its body is free. A halt that the host caused and that latched is taken back.
+    pub(crate) fn wait_until_free(&mut self, daemon: &Player) -> Result<(), String> {
+        let waited = wait_for("the body is free, or halted for good", || {
+            self.stage.is_free(CREATURE) || self.is_latched()
+        });
+        waited.map_err(|e| {
             let halt = self.stage.status(CREATURE)["halt"].to_string();
             format!("{e}; it stands {halt}, the daemon said {:?}", daemon.said())
+        })?;
+        if !self.is_latched() {
+            return Ok(());
+        }
+        self.blame_the_host();
+        self.reset(daemon)
+    }
+
+    /// Whether the body is halted for a cause that latches.
+    pub(crate) fn is_latched(&self) -> bool {
+        self.stage.status(CREATURE)["halt"]["latched"] == true
+    }
+
+    /// Takes back a halt that latched.
+    pub(crate) fn reset(&mut self, daemon: &Player) -> Result<(), String> {
+        let mut answer = None;
+        // Refused for as long as the cause stands.
+        wait_for("a reset is granted", || {
+            answer = self.stage.ask(CREATURE, &Request::Reset);
+            answer == Some(Reply::Done)
         })
+        .map_err(|e| format!("{e}: {answer:?}"))?;
+        // It takes effect with the motor unit's next beat.
+        wait_for("the reset takes effect", || !self.is_latched())?;
+        self.wait_until_free(daemon)
+    }
+
+    /// Counts a halt that latched without a fault as the host's, if that is what it was: some thread was held up for
+    /// half a period of the layer on trial.
+    pub(crate) fn blame_the_host(&mut self) {
+        let status = self.stage.status(CREATURE);
+        let layers = status["layers"].as_array().into_iter().flatten();
+        // How long the step on trial lasted, the fault decides.
+        let times = layers.flat_map(|l| {
+            let step = (l["name"] != "trial").then_some(&l["step_us"]["max"]);
+            step.into_iter().chain([&l["latency_us"]["max"]])
+        });
+        let longest_us = times.filter_map(Value::as_f64).fold(0.0, f64::max);
+        let held_up = longest_us * 1e3 > inside::PERIOD.0 as f64 / 2.0;
+        self.outcome.host_halts += u64::from(held_up);
+        self.outcome.expect(held_up, || {
+            format!("the body was halted without a fault: {}", status["halt"])
+        });
     }
 
     /// Waits until the daemon answers everybody again, twenty times in a row: those who took all places are gone, and
@@ -135,11 +196,22 @@ impl Trial {
         })
     }
 
+    /// Runs `round` as often as the fault is to be injected.
+    pub(crate) fn in_rounds(
+        &mut self,
+        mut round: impl FnMut(&mut Trial) -> Result<(), String>,
+    ) -> Result<(), String> {
+        (0..self.rounds).try_for_each(|_| {
+            self.outcome.injections += 1;
+            round(self)
+        })
+    }
+
     /// Tries a fault that must not halt the body: the daemon goes on. The body is a process of its own, whose
     /// world turns in real time: one inside the daemon is an ordinary thread, and lost when the host is busy.
     pub(crate) fn goes_on(
         &mut self,
-        fault: impl FnOnce(&mut Trial) -> Result<(), String>,
+        fault: impl FnMut(&mut Trial) -> Result<(), String>,
     ) -> Result<(), String> {
         let mut body = self.body()?;
         let daemon = self.daemon(&["--body", BODY])?;
@@ -155,19 +227,20 @@ impl Trial {
     pub(crate) fn goes_on_with(
         &mut self,
         mut daemon: Player,
-        fault: impl FnOnce(&mut Trial) -> Result<(), String>,
+        mut fault: impl FnMut(&mut Trial) -> Result<(), String>,
     ) -> Result<(), String> {
         let observer = Observer::of_the_host()?;
-        self.wait_a_while();
         let before = self.stage.status(CREATURE);
-        fault(self).map_err(|e| {
-            let said = daemon.said();
-            format!("{e}; the daemon last said {:?}", said.last())
-        })?;
+        let tried = self.in_rounds(|trial| {
+            trial.wait_a_while();
+            trial.noted = trial.stage.events(CREATURE).last().map_or(0, |e| e.number);
+            fault(trial)
+        });
+        tried.map_err(|e| format!("{e}; the daemon last said {:?}", daemon.said().last()))?;
         // Two looks of the daemon's own watcher: what the fault did is in its status.
         clock::sleep_until(clock::monotonic() + Span::millis(250));
         let after = self.stage.status(CREATURE);
-        self.outcome.host_late = observer.late();
+        self.outcome.host_late = self.outcome.host_late.max(observer.late());
         self.outcome.inspect(&after);
         self.outcome.expect_no_halt(&before, &after);
         let (was, is) = (beats_of_level_0(&before), beats_of_level_0(&after));
@@ -181,6 +254,15 @@ impl Trial {
         self.end(&mut daemon)
     }
 
+    /// Waits until an event of this round holds all of `parts`.
+    pub(crate) fn told(&self, parts: &[&str]) -> Result<(), String> {
+        let holds =
+            |event: &Event| event.number > self.noted && parts.iter().all(|part| event.text.contains(part));
+        wait_for(&format!("an event says {parts:?}"), || {
+            self.stage.events(CREATURE).iter().any(holds)
+        })
+    }
+
     /// Ends a daemon in good order.
     pub(crate) fn end(&mut self, daemon: &mut Player) -> Result<(), String> {
         if let Err(trouble) = daemon.leave() {
@@ -189,23 +271,30 @@ impl Trial {
         Ok(())
     }
 
-    /// Notes the time from `fault` to `halted`, which may take `bound`.
-    pub(crate) fn halted(&mut self, fault: Time, halted: Option<Time>, bound: Span) {
-        self.outcome.halted = halted.map(|at| at.since(fault));
-        self.outcome.bound = Some(bound);
+    /// Notes the time from `fault` to `halted`, which may take `bound`, while `observer` looked on.
+    pub(crate) fn halted(&mut self, fault: Time, halted: Option<Time>, bound: Span, observer: &Observer) {
         self.outcome.period = Some(self.limits.period);
+        let halted = halted.map(|at| at.since(fault));
+        self.outcome.halted(halted, bound, observer.late());
     }
 
     /// Starts the daemon again after a death, with the body process that saw it, and looks whether all is well.
-    pub(crate) fn restart(&mut self) -> Result<(), String> {
+    pub(crate) fn restart(&mut self) -> Result<Player, String> {
         let began = clock::monotonic();
-        let mut daemon = self.daemon(&["--body", BODY])?;
-        self.outcome.restart = Some(clock::monotonic().since(began));
+        let daemon = self.daemon(&["--body", BODY])?;
+        let took = clock::monotonic().since(began);
+        self.outcome.restart = self.outcome.restart.max(Some(took));
+        self.look_at_status()?;
+        Ok(daemon)
+    }
+
+    /// Takes in what the daemon's status says, as soon as the body tells how it looks.
+    pub(crate) fn look_at_status(&mut self) -> Result<(), String> {
         wait_for("the body tells how it looks", || {
             self.stage.status(CREATURE)["contacts"].is_object()
         })?;
         self.outcome.inspect(&self.stage.status(CREATURE));
-        self.end(&mut daemon)
+        Ok(())
     }
 
     /// The daemon that answers.

@@ -5,8 +5,10 @@
 use std::io::{BufRead, BufReader};
 use std::process::{Child, Command, ExitStatus, Stdio};
 use std::sync::{Arc, Mutex};
+use std::thread::JoinHandle;
+use std::time::{Duration, Instant};
 
-use rustix::process::{Pid, Signal, kill_process};
+use rustix::process::{Pid, Signal, WaitId, WaitIdOptions, kill_process, waitid};
 
 use crate::wait_for;
 
@@ -15,7 +17,11 @@ use crate::wait_for;
 pub struct Player {
     child: Child,
     said: Arc<Mutex<Vec<String>>>,
+    listener: Option<JoinHandle<()>>,
 }
+
+/// How long the last words of a process may take to be heard, should a child of its own still hold the line.
+const LAST_WORDS: Duration = Duration::from_secs(1);
 
 impl Player {
     /// Starts `command`; what it says on standard error is heard.
@@ -29,12 +35,17 @@ impl Player {
         let said = Arc::new(Mutex::new(Vec::new()));
         let heard = said.clone();
         let errors = child.stderr.take().ok_or("standard error was not piped")?;
-        std::thread::spawn(move || {
+        let listener = std::thread::spawn(move || {
             for line in BufReader::new(errors).lines().map_while(Result::ok) {
                 heard.lock().expect("nobody panics holding it").push(line);
             }
         });
-        Ok(Player { child, said })
+        let listener = Some(listener);
+        Ok(Player {
+            child,
+            said,
+            listener,
+        })
     }
 
     /// Its process id.
@@ -45,6 +56,25 @@ impl Player {
     /// Sends it a signal.
     pub fn signal(&self, signal: Signal) {
         let _ = kill_process(Pid::from_child(&self.child), signal);
+    }
+
+    /// Freezes it by SIGSTOP, and waits until all of it stands: the first of its threads to hear of it stops the others,
+    /// and on a busy host that one may have to wait for its turn.
+    ///
+    /// # Errors
+    /// When it does not stop.
+    pub fn freeze(&self) -> Result<(), String> {
+        self.signal(Signal::STOP);
+        let pid = Pid::from_child(&self.child);
+        let looked = WaitIdOptions::STOPPED | WaitIdOptions::NOHANG | WaitIdOptions::NOWAIT;
+        let began = Instant::now();
+        while !matches!(waitid(WaitId::Pid(pid), looked), Ok(Some(_))) {
+            if began.elapsed() > crate::PATIENCE {
+                return Err("given up waiting until the process stands".into());
+            }
+            std::thread::sleep(Duration::from_micros(200));
+        }
+        Ok(())
     }
 
     /// Sends `signal`, which ends it, and waits for the end.
@@ -86,7 +116,18 @@ impl Player {
             status = self.child.try_wait().ok().flatten();
             status.is_some()
         });
+        self.hear_out();
         status.ok_or_else(|| format!("{}; it said {:?}", ended.err().unwrap_or_default(), self.said()))
+    }
+
+    /// Waits until all that a process said which has ended is heard.
+    fn hear_out(&mut self) {
+        let began = Instant::now();
+        if let Some(listener) = self.listener.take() {
+            while !listener.is_finished() && began.elapsed() < LAST_WORDS {
+                std::thread::sleep(Duration::from_millis(1));
+            }
+        }
     }
 
     /// What it said so far on its standard error.

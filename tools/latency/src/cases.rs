@@ -5,6 +5,7 @@
 use std::hint::black_box;
 use std::sync::Arc;
 
+use afsm::trace::trace;
 use ipc::clock::{Span, Time};
 use ipc::message::{Kind, Payload};
 use ipc::tap::{self, Window};
@@ -81,6 +82,11 @@ pub const CASES: &[Case] = &[
             })
         },
     },
+    Case {
+        name: "beat_100_traced",
+        about: "a beat of a layer of a hundred such modules, traced, and the trace fetched",
+        ready: traced,
+    },
 ];
 
 /// The case called `name`.
@@ -144,6 +150,17 @@ fn write() -> Box<dyn FnMut()> {
 fn beat(modules: usize) -> Box<dyn FnMut()> {
     let mut rig = Rig::new(1, modules);
     Box::new(move || rig.beat())
+}
+
+fn traced() -> Box<dyn FnMut()> {
+    let mut rig = Rig::new(1, 100);
+    let (registers, outlets) = rig.layers[0].ports();
+    let (tracer, mut out) = trace(BEAT, registers, outlets);
+    rig.layers[0].trace(tracer);
+    Box::new(move || {
+        rig.beat();
+        black_box(out.next_beat());
+    })
 }
 
 #[cfg(test)]

@@ -179,8 +179,9 @@ fn attend(manifest: &Source, kinds: &Kinds, options: &Options) -> Result<(), Tro
                     }));
                 }
             }
-            // Before the first success a refusal is final; afterwards the daemon may just not be back yet, or a
-            // layer whose ports this one taps.
+            // Told to leave, it does not matter what came of it. Before the first success a refusal is final;
+            // afterwards the daemon may just not be back yet, or a layer whose ports this one taps.
+            Err(_) if leave.load(Ordering::Relaxed) => return Ok(()),
             Err(trouble) if !attached_before && !options.wait => return Err(trouble),
             Err(Trouble::Call(CallError::NoDaemon { .. })) => {}
             Err(trouble) => {

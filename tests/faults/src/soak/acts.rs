@@ -118,7 +118,7 @@ impl<'t> Layers<'t> {
     pub(super) fn over(trial: &'t mut Trial, body: Pid) -> Result<Layers<'t>, String> {
         let daemon = trial.daemon_pid()?;
         Ok(Layers {
-            observer: Observer::of_the_body()?,
+            observer: Observer::of_the_body(Span::ZERO)?,
             trial,
             wander: None,
             daemon,

@@ -116,7 +116,7 @@ pub(crate) fn inside(seconds: f64, seed: u64) -> Result<(), String> {
     let leave = Arc::new(AtomicBool::new(false));
     signal_hook::flag::register(signal_hook::consts::SIGTERM, leave.clone())
         .map_err(|e| format!("SIGTERM: {e}"))?;
-    let mut trial = Trial::new(seed)?.living(seconds);
+    let mut trial = Trial::new(seed, 1)?.living(seconds);
     let mut body = trial.body()?;
     let mut daemon = trial.daemon(&["--body", BODY, "--flight-recorder", "off"])?;
     let mut layers = Layers::over(&mut trial, pid_of(&body)?)?;
