@@ -50,7 +50,12 @@ fn the_standard_office_is_good_and_furnished() {
 #[test]
 fn every_error_says_where() {
     let cases = [
-        ("size = [6.0, 4]", "size = [6.0, 0.4]", (2, 8), "within 1 to 200"),
+        (
+            "size = [6.0, 4]",
+            "size = [6.0, 0.4]",
+            (2, 8),
+            "expected 1 to 200 m",
+        ),
         ("size = [6.0, 4]", "size = [6.0, \"4\"]", (2, 14), "expected"),
         ("size = [6.0, 4]", "size = [6.0, 4", (3, 1), "missing comma"),
         (
@@ -118,7 +123,8 @@ fn every_error_says_where() {
     for (from, to, (line, column), part) in cases {
         let error = Layout::parse(&GOOD.replace(from, to)).expect_err(to);
         assert_eq!((error.line, error.column), (line, column), "{to}: {error}");
-        assert!(error.message.contains(part), "{to}: {error}");
+        assert!(error.to_string().contains(part), "{to}: {error}");
+        assert!(!error.help.is_empty(), "{to}: {error}");
     }
 }
 
@@ -133,4 +139,15 @@ fn a_place_that_nobody_can_walk_to_is_refused() {
         error.message.contains("nobody can walk here from \"west\""),
         "{error}"
     );
+}
+
+#[test]
+fn all_errors_are_told_in_the_order_of_the_text() {
+    let wrong = GOOD
+        .replace("start = [1.0, 2.0, 90.0]", "start = [7.0, 2.0, 90.0]")
+        .replace("size = [1.6, 0.8]", "size = [1.6, 0.0]")
+        .replace("name = \"east\"", "name = \"west\"");
+    let errors = Layout::read(&wrong).expect_err("three things are wrong");
+    let lines: Vec<usize> = errors.iter().map(|error| error.line).collect();
+    assert_eq!(lines, [3, 15, 27], "{errors:?}");
 }

@@ -11,6 +11,7 @@ fn order(rows: &[&str], seeds: u64, hours: f64, threads: usize) -> Order {
         seeds,
         hours,
         threads,
+        layout: None,
     }
 }
 
