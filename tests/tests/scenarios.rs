@@ -56,7 +56,7 @@ fn every_scenario_passes_and_its_hash_does_not_hang_on_the_order_of_modules() {
 /// The hash of one run, the same in debug and release, today and tomorrow. It changes when what Allen says
 /// on any wire changes, be it the last bit of a heading: then write down the new one, and say why.
 const GOLDEN: &str = "layers/allen/scenarios/level1/wander_is_heard.toml";
-const GOLDEN_HASH: u64 = 0x6f77_eb5b_694f_545d;
+const GOLDEN_HASH: u64 = 0xced3_2fc5_607a_b23b;
 
 #[test]
 fn a_run_has_the_hash_it_always_had() {
