@@ -46,10 +46,7 @@ pub(crate) fn daemon_freezes(trial: &mut Trial) -> Result<(), String> {
         drop(observer);
         trial.wait_until_free(&daemon)
     })?;
-    trial.look_at_status()?;
-    trial.end(&mut daemon)?;
-    leave_body(trial, &mut body);
-    Ok(())
+    leave_both(trial, &mut daemon, &mut body)
 }
 
 /// The body's process dies or freezes; the daemon halts until one of its name is back.
@@ -76,10 +73,7 @@ pub(crate) fn body_lost(trial: &mut Trial, signal: Signal) -> Result<(), String>
         }
         trial.wait_until_free(&daemon)
     })?;
-    trial.look_at_status()?;
-    trial.end(&mut daemon)?;
-    leave_body(trial, &mut body);
-    Ok(())
+    leave_both(trial, &mut daemon, &mut body)
 }
 
 /// A layer with `overrun = "halt"` overruns inside the daemon, which halts within two periods of the watchdog after the
@@ -96,10 +90,7 @@ pub(crate) fn overruns_inside(trial: &mut Trial) -> Result<(), String> {
         clock::sleep_until(clock::monotonic() + Span(4 * inside::PERIOD.0));
         trial.reset(&daemon)
     })?;
-    trial.look_at_status()?;
-    trial.end(&mut daemon)?;
-    leave_body(trial, &mut body);
-    Ok(())
+    leave_both(trial, &mut daemon, &mut body)
 }
 
 /// A vital layer inside the daemon never returns: the daemon halts within two periods of the watchdog after it has been
@@ -235,9 +226,14 @@ pub(crate) fn emergency_stop(trial: &mut Trial) -> Result<(), String> {
         drop(observer);
         trial.reset(&daemon)
     })?;
+    leave_both(trial, &mut daemon, &mut body)
+}
+
+/// Looks once more at a daemon that has lived through all rounds, and brings it and its body to their end.
+fn leave_both(trial: &mut Trial, daemon: &mut Player, body: &mut Player) -> Result<(), String> {
     trial.look_at_status()?;
-    trial.end(&mut daemon)?;
-    leave_body(trial, &mut body);
+    trial.end(daemon)?;
+    leave_body(trial, body);
     Ok(())
 }
 
@@ -246,9 +242,7 @@ fn on_trial(trial: &mut Trial, how: Break) -> Result<Player, String> {
     let arguments = ["inside", how.name(), "--seconds", &trial.life_s];
     let daemon = trial.stage.start(&trial.programs.ourselves, &arguments)?;
     trial.wait_until_free(&daemon)?;
-    wait_for("the body tells how it looks", || {
-        trial.stage.status(CREATURE)["contacts"].is_object()
-    })?;
+    trial.wait_for_looks()?;
     Ok(daemon)
 }
 
@@ -315,9 +309,7 @@ fn body_closes(observer: &Observer, fault: Time) -> Option<Time> {
 
 /// Waits for the body's own gate to close: within its stale limit and one of its periods.
 fn body_halts(trial: &mut Trial, observer: &Observer, fault: Time) {
-    let closed = body_closes(observer, fault);
-    let bound = trial.limits.stale + trial.limits.period;
-    trial.halted(fault, closed, bound, observer);
+    body_halts_about(trial, observer, fault, fault);
 }
 
 /// The same where the fault came about: not before `after`, and at `fault` at the latest.

@@ -215,9 +215,7 @@ impl Trial {
     ) -> Result<(), String> {
         let mut body = self.body()?;
         let daemon = self.daemon(&["--body", BODY])?;
-        wait_for("the body tells how it looks", || {
-            self.stage.status(CREATURE)["contacts"].is_object()
-        })?;
+        self.wait_for_looks()?;
         self.goes_on_with(daemon, fault)?;
         leave_body(self, &mut body);
         Ok(())
@@ -288,11 +286,16 @@ impl Trial {
         Ok(daemon)
     }
 
-    /// Takes in what the daemon's status says, as soon as the body tells how it looks.
-    pub(crate) fn look_at_status(&mut self) -> Result<(), String> {
+    /// Waits until the body has told how it looks: with that, contacts are counted.
+    pub(crate) fn wait_for_looks(&self) -> Result<(), String> {
         wait_for("the body tells how it looks", || {
             self.stage.status(CREATURE)["contacts"].is_object()
-        })?;
+        })
+    }
+
+    /// Takes in what the daemon's status says, as soon as the body tells how it looks.
+    pub(crate) fn look_at_status(&mut self) -> Result<(), String> {
+        self.wait_for_looks()?;
         self.outcome.inspect(&self.stage.status(CREATURE));
         Ok(())
     }
