@@ -107,18 +107,20 @@ pub(super) struct Layers<'t> {
     trial: &'t mut Trial,
     observer: Observer,
     wander: Option<Player>,
-    daemon: Pid,
+    daemon: &'t Player,
     body: Pid,
+    /// The status up to which halts were judged.
+    judged: Value,
     /// Numbers rogues, so that none is kept out for what another did.
     rogues: u64,
 }
 
 impl<'t> Layers<'t> {
     /// Over a daemon that runs.
-    pub(super) fn over(trial: &'t mut Trial, body: Pid) -> Result<Layers<'t>, String> {
-        let daemon = trial.daemon_pid()?;
+    pub(super) fn over(trial: &'t mut Trial, daemon: &'t Player, body: Pid) -> Result<Layers<'t>, String> {
         Ok(Layers {
             observer: Observer::of_the_body(Span::ZERO)?,
+            judged: trial.stage.status(SOAKED),
             trial,
             wander: None,
             daemon,
@@ -145,11 +147,10 @@ impl<'t> Layers<'t> {
     pub(super) fn act(&mut self, tally: &mut Tally) -> Result<(), String> {
         let (act, name) = self.choose();
         let before = self.status();
-        self.observer.begin();
         let cause = self.do_it(act).map_err(|e| format!("{name}: {e}"))?;
         *tally.done.entry(name).or_default() += 1;
-        let free = wait_for("the body is free", || self.trial.stage.is_free(SOAKED));
-        free.map_err(|e| format!("after {name:?}: {e}; it stands {}", self.status()["halt"]))?;
+        self.wait_until_free()
+            .map_err(|e| format!("after {name:?}: {e}; it stands {}", self.status()["halt"]))?;
         // One look of the daemon's watcher later, everything is in its status.
         std::thread::sleep(Duration::from_millis(120));
         let after = self.status();
@@ -161,17 +162,37 @@ impl<'t> Layers<'t> {
                     .broken
                     .push(format!("MISSED: {name}: no halt for {cause:?}"));
             }
-        } else if halts(&after) > halts(&before) {
-            let late = self.observer.late() > HOST_LATE || missed(&after) > missed(&before);
-            match late {
-                true => tally.host_halts += halts(&after) - halts(&before),
+        } else {
+            // In the pause before it as well.
+            let more = halts(&after).saturating_sub(halts(&self.judged));
+            match more == 0 || self.held_up(&after) {
+                true => tally.host_halts += more,
                 false => tally.broken.push(format!(
                     "{name}: the body was halted: {}",
                     after["halt"]["counts"]
                 )),
             }
         }
+        self.judged = after;
+        self.observer.begin();
         Ok(())
+    }
+
+    /// Waits until the body is free. A halt that latched while the host held threads up is taken back.
+    fn wait_until_free(&mut self) -> Result<(), String> {
+        let is_free = || self.trial.stage.is_free(SOAKED);
+        wait_for("the body is free, or halted for good", || {
+            is_free() || self.trial.is_latched()
+        })?;
+        match self.trial.is_latched() && self.held_up(&self.status()) {
+            true => self.trial.reset(self.daemon),
+            false => wait_for("the body is free", is_free),
+        }
+    }
+
+    /// Whether the host held real-time threads up since halts were judged last, so long that one may be its doing.
+    fn held_up(&self, now: &Value) -> bool {
+        self.observer.late() > HOST_LATE || missed(now) > missed(&self.judged)
     }
 
     fn choose(&mut self) -> (Act, &'static str) {
@@ -224,13 +245,11 @@ impl<'t> Layers<'t> {
             Act::EmergencyStop => {
                 self.ask(&Request::Halt)?;
                 wait_for("it is halted", || self.status()["halt"]["latched"] == true)?;
-                wait_for("a reset ends it", || {
-                    matches!(self.trial.stage.ask(SOAKED, &Request::Reset), Some(Reply::Done))
-                })?;
+                self.trial.reset(self.daemon)?;
                 return Ok(Some("emergency stop"));
             }
             Act::FreezeDaemon => {
-                freeze(self.daemon)?;
+                freeze(self.trial.daemon_pid()?)?;
                 return Ok(Some("stale command"));
             }
             Act::FreezeBody => {

@@ -119,7 +119,7 @@ pub(crate) fn inside(seconds: f64, seed: u64) -> Result<(), String> {
     let mut trial = Trial::new(seed, 1)?.living(seconds);
     let mut body = trial.body()?;
     let mut daemon = trial.daemon(&["--body", BODY, "--flight-recorder", "off"])?;
-    let mut layers = Layers::over(&mut trial, pid_of(&body)?)?;
+    let mut layers = Layers::over(&mut trial, &daemon, pid_of(&body)?)?;
     layers.fill();
     let mut tally = Tally::default();
     let mut growth = Growth::of(daemon.pid(), body.pid());
