@@ -132,7 +132,7 @@ fn one_seed_gives_one_run_whatever_the_order_of_modules() {
 const MINUTES_S: u64 = 300;
 
 /// The hash of all messages of levels 0 and 1, seed 1, in those minutes; debug and release builds agree on it.
-const GOLDEN: u64 = 0x918b_8c5c_733f_4a6f;
+const GOLDEN: u64 = 0x6d7e_430b_a7e2_4fb4;
 
 /// A creature of level 0 with a layer above it that only ever says: straight ahead.
 fn insisting(seed: u64) -> String {

@@ -8,9 +8,10 @@
 //! A map is a second old before the next one comes, and a person crosses the reach of an arm in that time.
 //! What the map showed is therefore kept as *marks*, points of the floor; the robot is moved among them as
 //! odometry and compass say, plus the way it needs to stop at its present speed; and a mark matters as soon
-//! as whoever stood there could by then, at a walking pace, have come to the front half of the robot. A mark
-//! that was there in the map before is *resting*: who stands has to start before walking, and whoever may
-//! hide behind it is farther still. What touches the back was not driven into.
+//! as whoever stood there could by then, at a walking pace, have come to the front half of the robot. Where
+//! the map before had a mark near it, that one has moved by as much, and walks no faster than who starts is
+//! after such a way: who stands has to start before walking, and whoever may hide behind is farther still.
+//! What touches the back was not driven into.
 //!
 //! So the robot is quick where there is room, and goes through a door by short advances, one for each map.
 use afsm::{Beat, In, Module, ModuleKind, Out, Settings};
@@ -89,9 +90,11 @@ const TOUCHING_M: f64 = 0.2;
 const PERSON_M: f64 = 0.22;
 /// Backward per sideways from which on a mark lies behind: 30 degrees back from abeam.
 const BEHIND: f64 = 0.6;
-/// Nearer than this to where something was a map ago, metres, it is at rest: four sigma of a range, and what
+/// Nearer than this to where something was a map ago, metres, it is the same: four sigma of a range, and what
 /// the pose is off by after a second.
 const RESTING_M: f64 = 0.15;
+/// What came nearer by less than this, metres, stands: two sigma of the difference of two ranges.
+const STILL_M: f64 = 0.05;
 /// How fast the measured speed follows the odometry, 1/s: over a tenth of a second its slip averages out.
 const FOLLOW: f64 = 10.0;
 /// What the measured speed may be off by, m/s: slip, and the speed gained before it shows.
@@ -109,8 +112,8 @@ struct Mark {
     arc: [Spot; 3],
     /// When it was heard.
     at: Time,
-    /// Whether it was there in the map before as well.
-    resting: bool,
+    /// How fast it may have walked by then, m/s.
+    walking: f64,
 }
 
 /// The newest mark of each sonar, then older ones that may still hold.
@@ -165,8 +168,11 @@ impl Collide {
                 let range = if range < TOUCHING_M { 0.0 } else { range };
                 let middle = self.radius + range + PERSON_M;
                 let arc = ARC.map(|off| Spot::from(pose, middle, bearing(index) + off));
-                let resting = old().any(|old| same_place(&old.arc, &arc));
-                Mark { arc, at, resting }
+                let same = old().filter(|old| same_place(&old.arc, &arc));
+                // Who comes nearer has started; who goes away has to start anew.
+                let came = |old: &Mark| away(&old.arc, pose) - away(&arc, pose);
+                let walking = same.map(|old| self.started(came(old))).fold(self.pace, f64::min);
+                Mark { arc, at, walking }
             })
         });
         // An echo that was near a second ago and now is none was lost: the older one stands for it. It may have been
@@ -202,13 +208,19 @@ impl Collide {
         self.before = Some((pose, now));
     }
 
-    /// How far somebody comes in `seconds`, metres, who walked or stood when the time began.
-    fn walked(&self, seconds: f64, resting: bool) -> f64 {
-        let starting = if resting { self.pace / self.start } else { 0.0 };
+    /// How fast somebody walks, m/s, who began to and `came` so many metres.
+    fn started(&self, came: f64) -> f64 {
+        let way = (came - STILL_M).max(0.0);
+        libm::sqrt(2.0 * self.start * way).min(self.pace)
+    }
+
+    /// How far somebody comes in `seconds`, metres, who walked at `walking` m/s when the time began.
+    fn walked(&self, seconds: f64, walking: f64) -> f64 {
+        let starting = (self.pace - walking) / self.start;
         if seconds < starting {
-            self.start * seconds * seconds / 2.0
+            (walking + self.start * seconds / 2.0) * seconds
         } else {
-            self.pace * (seconds - starting / 2.0)
+            self.pace * seconds - (self.pace - walking) * starting / 2.0
         }
     }
 
@@ -221,7 +233,7 @@ impl Collide {
         let meet = self.radius + PERSON_M + self.margin;
         let (cos, sin) = (libm::cos(pose.heading), libm::sin(pose.heading));
         marks.iter().flatten().flatten().any(|mark| {
-            let walked = self.walked(now.since(mark.at).seconds() + stop, mark.resting);
+            let walked = self.walked(now.since(mark.at).seconds() + stop, mark.walking);
             let reaches = |spot: &Spot| {
                 let (dx, dy) = (spot.x - pose.x, spot.y - pose.y);
                 to_front(dx * cos + dy * sin - way, dy * cos - dx * sin, meet) < walked
@@ -244,6 +256,11 @@ fn is_a_neighbours(ranges: &[f64; SONARS], index: usize) -> bool {
 /// robot leaves one cone where the next begins.
 fn same_place(a: &[Spot; 3], b: &[Spot; 3]) -> bool {
     libm::hypot(a[1].x - b[1].x, a[1].y - b[1].y) < RESTING_M
+}
+
+/// How far from `pose` an arc is, metres.
+fn away(arc: &[Spot; 3], pose: Pose) -> f64 {
+    libm::hypot(arc[1].x - pose.x, arc[1].y - pose.y)
 }
 
 /// How far it is from (x, y) to the front half of a disc of `radius` about the origin; endless from behind,
