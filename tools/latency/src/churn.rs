@@ -23,8 +23,14 @@ pub const TAPPER: &str = "subsumed-lab-tapper";
 /// The name under which this program is started to be a reader.
 pub const READER: &str = "subsumed-lab-reader";
 
+/// The variable that names the processor of whoever is started.
+pub(crate) const CPU: &str = "SUBSUMED_LAB_CPU";
+
 /// Longest that a reader reads, whatever happens to its parent.
 const READER_MAX: Duration = Duration::from_secs(10);
+
+/// Events until everybody who came is gone again.
+pub const EVENTS: u32 = 4;
 
 /// Those who come and go.
 #[derive(Debug)]
@@ -80,7 +86,7 @@ impl Churn {
         Command::new(std::env::current_exe()?)
             .arg0(name)
             .args(["--creature", &self.creature, "--once"])
-            .env("SUBSUMED_LAB_CPU", cpu)
+            .env(CPU, cpu)
             .stdin(Stdio::null())
             .stdout(Stdio::null())
             .stderr(Stdio::null())
@@ -111,11 +117,10 @@ impl Drop for Churn {
     }
 }
 
-fn settle() {
+/// Stays where the lab wants it, and no longer than the lab.
+pub(crate) fn settle() {
     let _ = rustix::process::set_parent_process_death_signal(Some(rustix::process::Signal::KILL));
-    let cpu = std::env::var("SUBSUMED_LAB_CPU")
-        .ok()
-        .and_then(|c| c.parse().ok());
+    let cpu = std::env::var(CPU).ok().and_then(|c| c.parse().ok());
     if let Some(cpu) = cpu {
         let _ = daemon::executor::host::bind(cpu);
     }

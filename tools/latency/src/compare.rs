@@ -6,7 +6,7 @@ use crate::across::Means;
 use crate::gate::{self, Compared, LIMITS};
 use crate::pair::{Contest, Side};
 use crate::ratio::Ratio;
-use crate::run::{Asked, Outcome};
+use crate::run::{Asked, Company, Outcome};
 
 /// The part of a side that a comparison looks at.
 type Part = fn(&Side) -> &hdrhistogram::Histogram<u64>;
@@ -133,29 +133,32 @@ fn across(outcome: &Outcome) -> Vec<Compared> {
 /// Fewest rounds across processes that are judged: with fewer their spread says nothing.
 const ROUNDS_MIN: usize = 3;
 
-/// Step times of churning intervals against the quiet ones before them, over all layers.
+/// Step times of intervals in which layers came and went, against those just before without, and with the same
+/// coming and going at a neighbour; over all layers.
 fn churn(outcome: &Outcome) -> Vec<Compared> {
-    if !outcome.churning.contains(&true) {
-        return Vec::new();
-    }
     let steps = || outcome.tracks.iter().filter(|t| t.metric == "step");
     let mut compared = Vec::new();
-    for (q, quantile, base) in &LIMITS[..2] {
-        let mut ratios = Vec::new();
-        for track in steps() {
-            for (two, churning) in track.intervals.windows(2).zip(outcome.churning.windows(2)) {
-                if churning == [false, true] {
-                    let value = |k: usize| two[k].histogram.value_at_quantile(*q) as f64;
-                    ratios.push(value(1) / value(0));
+    for (before, what) in [
+        (0, "step, with churn / without"),
+        (1, "step, with churn / with the same at a neighbour"),
+    ] {
+        for (q, quantile, base) in &LIMITS[..2] {
+            let mut ratios = Vec::new();
+            for track in steps() {
+                for (turn, company) in track.intervals.windows(3).zip(outcome.company.windows(3)) {
+                    if company == Company::TURNS {
+                        let value = |k: usize| turn[k].histogram.value_at_quantile(*q) as f64;
+                        ratios.push(value(2) / value(before));
+                    }
                 }
             }
+            compared.extend(Ratio::of(&ratios).map(|ratio| Compared {
+                what: what.into(),
+                quantile,
+                ratio,
+                limit: Some(*base),
+            }));
         }
-        compared.extend(Ratio::of(&ratios).map(|ratio| Compared {
-            what: "step, with churn / without".into(),
-            quantile,
-            ratio,
-            limit: Some(*base),
-        }));
     }
     compared
 }

@@ -13,6 +13,7 @@ pub mod cyclictest;
 pub mod gate;
 pub mod load;
 pub mod modules;
+pub mod neighbour;
 pub mod pair;
 pub mod plant;
 pub mod probe;

@@ -11,12 +11,13 @@ use ipc::clock::Span;
 use ipc::wiring::creature::Wake;
 
 use crate::across::{self, Heard};
-use crate::churn::Churn;
+use crate::churn::{self, Churn};
 use crate::command::Reference;
 use crate::compare;
 use crate::creature::{self, Alive, Kept};
 use crate::gate::{Compared, Verdict};
-use crate::load::{Load, Loaded};
+use crate::load::{CHURN_EVERY, Load, Loaded};
+use crate::neighbour::Neighbour;
 use crate::pair::{self, CONTESTS, Contest, Round};
 use crate::plant::Plant;
 use crate::track::Track;
@@ -67,8 +68,8 @@ pub struct Outcome {
     pub across: Vec<across::Round>,
     /// Rounds across processes whose listener was kept from listening.
     pub unheard: usize,
-    /// Step times of quiet and churning intervals in turn, beginning with a quiet one: (churning, track, interval).
-    pub churning: Vec<bool>,
+    /// Who came and went in each interval of the creature's tracks.
+    pub company: Vec<Company>,
     /// Who came, left or was killed.
     pub churn_events: u64,
     /// What the host refused.
@@ -77,8 +78,35 @@ pub struct Outcome {
     pub interrupted: bool,
 }
 
-/// Pieces that the time of the creature is cut into: as many pairs of quiet and churning ones as make a median.
-const INTERVALS: u32 = 20;
+/// Whom an interval had for company.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Company {
+    /// Nobody.
+    Nobody,
+    /// Those who came and went at a neighbour: what they cost the host.
+    Elsewhere,
+    /// Those who came and went at the creature measured.
+    Here,
+}
+
+impl Company {
+    /// What follows each other under churn.
+    pub const TURNS: [Company; 3] = [Company::Nobody, Company::Elsewhere, Company::Here];
+}
+
+/// Most turns that the time of the creature is cut into: as many make a median.
+const TURNS_MAX: u32 = 7;
+
+/// How many intervals a time is cut into: whole turns, and under churn none so short that nobody comes and goes in it.
+fn intervals(length: Duration, churning: bool) -> u32 {
+    let all = Company::TURNS.len() as u32;
+    let least = Duration::from_nanos(CHURN_EVERY.0) * churn::EVENTS * all;
+    let turns = match churning {
+        true => (length.as_secs_f64() / least.as_secs_f64()) as u32,
+        false => TURNS_MAX,
+    };
+    turns.clamp(1, TURNS_MAX) * all
+}
 
 /// How many times the asked-for rounds are added at most where a limit is not kept.
 pub const ROUNDS_MORE: usize = 2;
@@ -112,7 +140,7 @@ pub fn run(asked: &Asked) -> Result<Outcome, String> {
         rounds: Vec::new(),
         across: Vec::new(),
         unheard: 0,
-        churning: Vec::new(),
+        company: Vec::new(),
         churn_events: 0,
         refusals: Vec::new(),
         interrupted: false,
@@ -201,19 +229,28 @@ fn measure_creature(
         wake,
     })?;
     outcome.refusals = alive.refusals();
-    let mut churn: Option<Churn> = None;
-    let piece = asked.length / INTERVALS;
+    let churning = asked.load == Load::Churn;
+    let neighbour = churning.then(|| Neighbour::start(asked.other_cpu, asked.period));
+    let neighbour = neighbour.transpose()?;
+    let intervals = intervals(asked.length, churning);
+    let piece = asked.length / intervals;
     progress.say(&format!(
         "the creature {} under load {}",
         alive.name,
         asked.load.name()
     ));
-    for n in 0..INTERVALS {
+    for n in 0..intervals {
         let end = Instant::now() + piece;
-        let churns = asked.load == Load::Churn && n % 2 == 1;
-        if churns {
-            churn = Some(Churn::new(&alive.name, asked.other_cpu));
-        }
+        let company = match churning {
+            true => Company::TURNS[n as usize % Company::TURNS.len()],
+            false => Company::Nobody,
+        };
+        let host = match company {
+            Company::Nobody => None,
+            Company::Elsewhere => neighbour.as_ref().map(|n| &n.name),
+            Company::Here => Some(&alive.name),
+        };
+        let mut churn = host.map(|name| Churn::new(name, asked.other_cpu));
         while Instant::now() < end && !leave.load(Ordering::Relaxed) {
             if let Some(churn) = &mut churn {
                 churn.tick().map_err(|e| format!("churn: {e}"))?;
@@ -223,9 +260,11 @@ fn measure_creature(
             std::thread::sleep(Duration::from_millis(20));
         }
         alive.look(true);
-        outcome.churning.push(churns);
-        if let Some(ended) = churn.take() {
-            outcome.churn_events += ended.events();
+        outcome.company.push(company);
+        if let Some(ended) = churn {
+            if company == Company::Here {
+                outcome.churn_events += ended.events();
+            }
             drop(ended);
             // Those killed at the end are cleaned up in nobody's interval.
             std::thread::sleep(Duration::from_millis(100));
@@ -361,5 +400,19 @@ impl Progress {
 
     fn end(&self) {
         self.bar.finish_and_clear();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn everybody_who_comes_in_an_interval_is_gone_at_its_end() {
+        let seconds = Duration::from_secs;
+        assert_eq!(intervals(seconds(12), true), 9);
+        assert_eq!(intervals(seconds(60), true), 21);
+        assert_eq!(intervals(seconds(1), true), 3);
+        assert_eq!(intervals(seconds(1), false), 21);
     }
 }

@@ -4,7 +4,7 @@
 
 use std::process::ExitCode;
 
-use crate::{across, churn, load};
+use crate::{across, churn, load, neighbour};
 
 /// Does a worker's work if this process was started as one.
 pub fn dispatch() -> Option<ExitCode> {
@@ -16,6 +16,7 @@ pub fn dispatch() -> Option<ExitCode> {
         churn::TAPPER => Some(churn::tap()),
         across::WORKER => Some(across::listen(&rest)),
         churn::READER => Some(churn::read(&rest)),
+        neighbour::NEIGHBOUR => Some(neighbour::live(&rest)),
         _ => None,
     }
 }

@@ -43,7 +43,7 @@ fn a_run_measures_every_layer_and_leaves_every_file() {
                 "{layer} {metric}: {} samples",
                 track.total.len()
             );
-            assert_eq!(track.intervals.len(), outcome.churning.len());
+            assert_eq!(track.intervals.len(), outcome.company.len());
         }
         let kept = outcome.kept.iter().find(|k| k.thread == layer).expect("counted");
         assert_eq!(kept.identity_faults, 0, "elapsed / period = beats + skipped");
