@@ -85,6 +85,42 @@ fn a_run_that_was_killed_goes_on_where_it_was() {
 }
 
 #[test]
+fn ctrl_c_keeps_what_was_played_and_says_how_to_go_on() {
+    let place = TempDir::new().expect("a folder");
+    let out = place.path().join("stopped.csv");
+    // An hour's work: it does not end by itself before it is told to.
+    let args = [
+        "grid",
+        "--games",
+        "100000",
+        "--trucks",
+        "8",
+        "--slots",
+        "900",
+        "--threads",
+        "1",
+    ];
+    let child = truckin(&args, &out).spawn().expect("the command starts");
+    let late = Instant::now() + Duration::from_secs(60);
+    while std::fs::metadata(&out).map_or(0, |file| file.len()) < 1000 && Instant::now() < late {
+        std::thread::sleep(Duration::from_millis(1));
+    }
+    let told = Command::new("kill")
+        .args(["-INT", &child.id().to_string()])
+        .status();
+    assert!(told.expect("kill starts").success());
+    let done = child.wait_with_output().expect("its end");
+    let said = String::from_utf8_lossy(&done.stderr);
+    assert_eq!(done.status.code(), Some(130), "{said}");
+    assert!(
+        said.contains("truck-slots are kept, and the same command goes on"),
+        "{said}"
+    );
+    let kept = std::fs::read_to_string(&out).expect("results so far");
+    assert!(kept.ends_with('\n') && kept.lines().count() > 2, "whole lines");
+}
+
+#[test]
 fn a_file_cut_anywhere_is_completed() {
     let place = TempDir::new().expect("a folder");
     let whole = std::fs::read(small(&place, "2")).expect("results");

@@ -1,6 +1,9 @@
 //! `truckin grid`: the whole experiment, resumable, and its report.
 
+use std::ops::ControlFlow;
 use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
 use clap::Args;
@@ -16,7 +19,7 @@ use crate::report::{self, Page};
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:
   truckin grid                                  the whole grid, into truckin-grid.csv
-  truckin grid                                  again: goes on where it was stopped
+  truckin grid                                  again: goes on where it was stopped, by Ctrl-C or otherwise
   truckin grid --games 20 --trucks 1,5 --slots 1000 --out small.csv
   truckin grid --out small.csv --report small.html --check")]
 pub struct GridArgs {
@@ -72,6 +75,12 @@ pub(super) fn run(args: &GridArgs) -> Result<(), Trouble> {
         "{bar:30} {percent:>3} %  {human_pos} of {human_len} truck-slots  {per_sec}  {eta_precise} left",
     );
     bar.set_style(style.expect("a template that was tried"));
+    let stop = Arc::new(AtomicBool::new(false));
+    for signal in [signal_hook::consts::SIGINT, signal_hook::consts::SIGTERM] {
+        // The second one ends the program at once.
+        let _ = signal_hook::flag::register_conditional_default(signal, stop.clone());
+        let _ = signal_hook::flag::register(signal, stop.clone());
+    }
     let begun = Instant::now();
     let mut first: Option<Progress> = None;
     let mut last = Progress {
@@ -86,14 +95,25 @@ pub(super) fn run(args: &GridArgs) -> Result<(), Trouble> {
         first.get_or_insert(progress);
         last = progress;
         bar.set_position(progress.truck_slots);
+        // Relaxed: the flag guards nothing but itself.
+        match stop.load(Ordering::Relaxed) {
+            true => ControlFlow::Break(()),
+            false => ControlFlow::Continue(()),
+        }
     })?;
     bar.finish_and_clear();
+    let (out, all) = (args.out.display(), experiment.truck_slots(experiment.blocks()));
+    if last.blocks < experiment.blocks() {
+        return Err(Trouble::Stopped(format!(
+            "{out}: stopped; {} of {all} truck-slots are kept, and the same command goes on with them",
+            last.truck_slots
+        )));
+    }
     let seconds = begun.elapsed().as_secs_f64();
     let played = last.truck_slots - first.map_or(0, |first| first.truck_slots);
     say(&format!(
-        "{}: {} truck-slots, {played} of them now, in {seconds:.1} s on {threads} threads: {:.2} million a \
+        "{out}: {} truck-slots, {played} of them now, in {seconds:.1} s on {threads} threads: {:.2} million a \
          second and thread",
-        args.out.display(),
         last.truck_slots,
         played as f64 / seconds / threads as f64 / 1e6,
     ))?;

@@ -14,6 +14,8 @@ pub enum Trouble {
     BadInput(String),
     /// It should have worked; exit status 1.
     Failed(String),
+    /// Somebody stopped it before it was done: with what was kept, and how to go on; exit status 130, as of Ctrl-C.
+    Stopped(String),
     /// Whoever was reading has gone; nothing more to say, exit status 0.
     NobodyListens,
 }
@@ -24,6 +26,7 @@ impl Trouble {
         match self {
             Self::BadInput(_) => 2,
             Self::Failed(_) => 1,
+            Self::Stopped(_) => 130,
             Self::NobodyListens => 0,
         }
     }
@@ -32,7 +35,7 @@ impl Trouble {
 impl fmt::Display for Trouble {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::BadInput(what) | Self::Failed(what) => out.write_str(what),
+            Self::BadInput(what) | Self::Failed(what) | Self::Stopped(what) => out.write_str(what),
             Self::NobodyListens => Ok(()),
         }
     }

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::fs::{File, OpenOptions, TryLockError};
 use std::io::Write;
+use std::ops::ControlFlow;
 use std::path::Path;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc;
@@ -21,7 +22,8 @@ pub struct Progress {
     pub truck_slots: u64,
 }
 
-/// Plays whatever the file at `path` does not hold yet and tells `progress` after each block.
+/// Plays whatever the file at `path` does not hold yet and tells `progress` after each block, which may break it off:
+/// what was played is kept, and the next run goes on from there.
 ///
 /// A file that does not exist is begun. One that exists is first checked as a whole; if it is damaged
 /// or holds another experiment, nothing is written. Bytes are only ever added at its end.
@@ -35,7 +37,7 @@ pub fn run(
     experiment: &Experiment,
     path: &Path,
     threads: usize,
-    progress: &mut dyn FnMut(Progress),
+    progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
 ) -> Result<(), GridFault> {
     assert!(threads > 0, "at least one thread");
     let mut file = open(path)?;
@@ -46,7 +48,9 @@ pub fn run(
         blocks: first,
         truck_slots: experiment.truck_slots(first),
     };
-    progress(done);
+    if progress(done).is_break() {
+        return Ok(());
+    }
     play_in_order(experiment, first, threads, |index, text| {
         let rest = after_tail(path, &before, &tail, text.as_bytes())?;
         file.write_all(rest)
@@ -54,8 +58,7 @@ pub fn run(
         tail.clear();
         done.blocks += 1;
         done.truck_slots += experiment.block(index).truck_slots();
-        progress(done);
-        Ok(())
+        Ok(progress(done))
     })?;
     file.sync_all()
         .map_err(|error| GridFault::io(path, "writing", error))
@@ -119,12 +122,12 @@ fn after_tail<'t>(path: &Path, before: &Results, tail: &[u8], text: &'t [u8]) ->
     })
 }
 
-/// Plays all blocks from `first` on and hands each to `write`, in order.
+/// Plays all blocks from `first` on and hands each to `write`, in order, until it breaks off.
 fn play_in_order(
     experiment: &Experiment,
     first: usize,
     threads: usize,
-    mut write: impl FnMut(usize, String) -> Result<(), GridFault>,
+    mut write: impl FnMut(usize, String) -> Result<ControlFlow<()>, GridFault>,
 ) -> Result<(), GridFault> {
     let next = AtomicUsize::new(first);
     let blocks = experiment.blocks();
@@ -152,7 +155,10 @@ fn play_in_order(
         for (index, text) in receiver {
             early.insert(index, text?);
             while let Some(text) = early.remove(&due) {
-                write(due, text)?;
+                if write(due, text)?.is_break() {
+                    // With the channel gone every thread ends after the block that it plays.
+                    return Ok(());
+                }
                 due += 1;
             }
         }
