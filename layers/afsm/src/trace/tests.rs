@@ -228,8 +228,14 @@ fn sorted(mut entries: Vec<Entry>) -> Vec<Entry> {
 
 #[test]
 fn random_beats_come_out_as_they_went_in_whatever_was_lost_between() {
+    // An interpreter takes a minute for what takes us a millisecond.
+    let (seeds, least) = if cfg!(miri) {
+        (1, (0, 0))
+    } else {
+        (40, (500, 2000))
+    };
     let (mut lost, mut came) = (0, 0);
-    for seed in 0..40 {
+    for seed in 0..seeds {
         let mut model = Model::new(seed);
         let (mut tracer, mut out) = trace(Span::secs(1), PORTS.0, PORTS.1);
         let mut told = Vec::new();
@@ -259,7 +265,7 @@ fn random_beats_come_out_as_they_went_in_whatever_was_lost_between() {
             );
         }
     }
-    assert!(lost > 500 && came > 2000, "{lost} lost, {came} came");
+    assert!(lost > least.0 && came > least.1, "{lost} lost, {came} came");
 }
 
 #[test]
