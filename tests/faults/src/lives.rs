@@ -51,9 +51,7 @@ pub(crate) fn daemon_freezes(trial: &mut Trial) -> Result<(), String> {
 
 /// The body's process dies or freezes; the daemon halts until one of its name is back.
 pub(crate) fn body_lost(trial: &mut Trial, signal: Signal) -> Result<(), String> {
-    let mut body = trial.body()?;
-    let mut daemon = on_trial(trial, Break::Busy)?;
-    trial.in_rounds(|trial| {
+    lives_on(trial, Break::Busy, |trial, daemon, body| {
         let (observer, fault) = at_a_free_moment(trial)?;
         observer.while_breaking(fault, || match signal {
             Signal::STOP => body.freeze(),
@@ -63,34 +61,30 @@ pub(crate) fn body_lost(trial: &mut Trial, signal: Signal) -> Result<(), String>
             }
         })?;
         let bound = Span(trial.limits.stale.0 + 2 * trial.limits.period.0);
-        halts(trial, &daemon, "body lost", fault, bound, &observer);
+        halts(trial, daemon, "body lost", fault, bound, &observer);
         drop(observer);
         if signal == Signal::STOP {
             body.signal(Signal::CONT);
         } else {
             body.end()?;
-            body = trial.body()?;
+            *body = trial.body()?;
         }
-        trial.wait_until_free(&daemon)
-    })?;
-    leave_both(trial, &mut daemon, &mut body)
+        trial.wait_until_free(daemon)
+    })
 }
 
 /// A layer with `overrun = "halt"` overruns inside the daemon, which halts within two periods of the watchdog after the
 /// step that was too long, and lives.
 pub(crate) fn overruns_inside(trial: &mut Trial) -> Result<(), String> {
-    let mut body = trial.body()?;
-    let mut daemon = on_trial(trial, Break::Overrun)?;
-    trial.in_rounds(|trial| {
-        let (observer, fault) = broken_before_halted(trial, &mut daemon, Break::Overrun, "overrun")?;
+    lives_on(trial, Break::Overrun, |trial, daemon, _| {
+        let (observer, fault) = broken_before_halted(trial, daemon, Break::Overrun, "overrun")?;
         let bound = Span(2 * inside::PERIOD.0 + 2 * trial.limits.period.0);
-        halts(trial, &daemon, "overrun", fault, bound, &observer);
+        halts(trial, daemon, "overrun", fault, bound, &observer);
         drop(observer);
         // An overrun latches, and the beat after one may come late for its sake: nobody resets sooner than that.
         clock::sleep_until(clock::monotonic() + Span(4 * inside::PERIOD.0));
-        trial.reset(&daemon)
-    })?;
-    leave_both(trial, &mut daemon, &mut body)
+        trial.reset(daemon)
+    })
 }
 
 /// A vital layer inside the daemon never returns: the daemon halts within two periods of the watchdog after it has been
@@ -99,24 +93,17 @@ pub(crate) fn loops_inside(trial: &mut Trial) -> Result<(), String> {
     const CAUSE: &str = "vital layer late";
     /// How long a vital layer may be silent: its last beat was up to a period before the fault.
     const VITAL_LATE: Span = Span::millis(50);
-    let mut body = trial.body()?;
-    trial.in_rounds(|trial| {
-        let mut daemon = on_trial(trial, Break::Loop)?;
+    dies_each_time(trial, Break::Loop, |trial, daemon| {
         let best_effort = trial.stage.status(CREATURE)["mode"] == "best effort";
-        let (observer, fault) = broken_before_halted(trial, &mut daemon, Break::Loop, CAUSE)?;
+        let (observer, fault) = broken_before_halted(trial, daemon, Break::Loop, CAUSE)?;
         let bound = Span(VITAL_LATE.0 + 2 * trial.limits.period.0);
-        halts(trial, &daemon, CAUSE, fault, bound, &observer);
+        halts(trial, daemon, CAUSE, fault, bound, &observer);
         if best_effort {
             // Without SCHED_FIFO the thread starves nobody, and nobody ends it.
             daemon.signal(Signal::KILL);
         }
-        runs_away(trial, &mut daemon, &observer, fault)?;
-        drop(observer);
-        let mut daemon = trial.restart()?;
-        trial.end(&mut daemon)
-    })?;
-    leave_body(trial, &mut body);
-    Ok(())
+        runs_away(trial, daemon, &observer, fault)
+    })
 }
 
 /// The kernel ends a daemon one of whose real-time threads never sleeps; the body's own gate has closed then.
@@ -152,17 +139,15 @@ pub(crate) fn skips_inside(trial: &mut Trial) -> Result<(), String> {
 
 /// A module inside the daemon panics: the process is gone, the body's own gate closes.
 pub(crate) fn panics_inside(trial: &mut Trial) -> Result<(), String> {
-    let mut body = trial.body()?;
-    trial.in_rounds(|trial| {
-        let mut daemon = on_trial(trial, Break::Panic)?;
+    dies_each_time(trial, Break::Panic, |trial, daemon| {
         let (observer, _) = at_a_free_moment(trial)?;
-        let fault = broken(&daemon)?;
+        let fault = broken(daemon)?;
         let status = daemon.end()?;
         let ended = clock::monotonic();
         let closed = body_closes(&observer, fault);
         // Until the message is written the daemon lives, with its gate closed: commands of zero, which are fresh. Where
         // it does not come to say when that gate closed, what it lived on for is added to the bound.
-        let told = closed_for(&daemon, "panic", fault);
+        let told = closed_for(daemon, "panic", fault);
         if told.is_none() {
             observer.held_up(ended.since(fault));
         }
@@ -171,24 +156,18 @@ pub(crate) fn panics_inside(trial: &mut Trial) -> Result<(), String> {
         trial
             .outcome
             .expect(!status.success(), || format!("after a panic: {status}"));
-        drop(observer);
-        let mut daemon = trial.restart()?;
-        trial.end(&mut daemon)
-    })?;
-    leave_body(trial, &mut body);
-    Ok(())
+        Ok(())
+    })
 }
 
 /// SIGTERM in the middle of a long step: halted first, then left in good order.
 pub(crate) fn ends_in_mid_step(trial: &mut Trial) -> Result<(), String> {
-    let mut body = trial.body()?;
-    trial.in_rounds(|trial| {
-        let mut daemon = on_trial(trial, Break::Busy)?;
+    dies_each_time(trial, Break::Busy, |trial, daemon| {
         let (observer, fault) = at_a_free_moment(trial)?;
         observer.while_breaking(fault, || daemon.signal(Signal::TERM));
         // The signal is looked for as often as once a period.
         let bound = Span(3 * trial.limits.period.0);
-        halts(trial, &daemon, "shutdown", fault, bound, &observer);
+        halts(trial, daemon, "shutdown", fault, bound, &observer);
         let status = daemon.end()?;
         trial
             .outcome
@@ -197,19 +176,13 @@ pub(crate) fn ends_in_mid_step(trial: &mut Trial) -> Result<(), String> {
         trial
             .outcome
             .expect(closed.is_some(), || "the body's own gate stays open".into());
-        drop(observer);
-        let mut daemon = trial.restart()?;
-        trial.end(&mut daemon)
-    })?;
-    leave_body(trial, &mut body);
-    Ok(())
+        Ok(())
+    })
 }
 
 /// Somebody presses the emergency stop.
 pub(crate) fn emergency_stop(trial: &mut Trial) -> Result<(), String> {
-    let mut body = trial.body()?;
-    let mut daemon = on_trial(trial, Break::Busy)?;
-    trial.in_rounds(|trial| {
+    lives_on(trial, Break::Busy, |trial, daemon, _| {
         let mut connection = trial
             .stage
             .connect(CREATURE)
@@ -222,11 +195,40 @@ pub(crate) fn emergency_stop(trial: &mut Trial) -> Result<(), String> {
         });
         // Two periods as for any fault, and one for the thread that hears the caller, which is an ordinary one.
         let bound = Span(3 * trial.limits.period.0);
-        halts(trial, &daemon, "emergency stop", fault, bound, &observer);
+        halts(trial, daemon, "emergency stop", fault, bound, &observer);
         drop(observer);
-        trial.reset(&daemon)
-    })?;
+        trial.reset(daemon)
+    })
+}
+
+/// Rounds of one daemon with a module on trial, which lives through all of them, as its body does.
+fn lives_on(
+    trial: &mut Trial,
+    how: Break,
+    mut round: impl FnMut(&mut Trial, &mut Player, &mut Player) -> Result<(), String>,
+) -> Result<(), String> {
+    let mut body = trial.body()?;
+    let mut daemon = on_trial(trial, how)?;
+    trial.in_rounds(|trial| round(trial, &mut daemon, &mut body))?;
     leave_both(trial, &mut daemon, &mut body)
+}
+
+/// Rounds each of which a daemon with a module on trial does not outlive, and the next one starts at once; the body lives
+/// through all of them.
+fn dies_each_time(
+    trial: &mut Trial,
+    how: Break,
+    mut round: impl FnMut(&mut Trial, &mut Player) -> Result<(), String>,
+) -> Result<(), String> {
+    let mut body = trial.body()?;
+    trial.in_rounds(|trial| {
+        let mut daemon = on_trial(trial, how)?;
+        round(trial, &mut daemon)?;
+        let mut daemon = trial.restart()?;
+        trial.end(&mut daemon)
+    })?;
+    leave_body(trial, &mut body);
+    Ok(())
 }
 
 /// Looks once more at a daemon that has lived through all rounds, and brings it and its body to their end.
