@@ -43,6 +43,8 @@ impl Neighbour {
         command.arg0(NEIGHBOUR).arg(period.0.to_string());
         command.env(churn::CPU, cpu.to_string());
         command.stdin(Stdio::piped()).stdout(Stdio::piped());
+        // What it says of its own layers would be taken for what the measured ones say.
+        command.stderr(Stdio::null());
         // Ctrl-C is for the lab, which ends it.
         command.process_group(0);
         let mut child = command.spawn().map_err(|e| format!("the neighbour: {e}"))?;
