@@ -65,6 +65,8 @@ fn a_body_process_whose_sensors_are_cut_halts_and_leaves() {
     assert_eq!(of_body.len(), 1, "{of_body:?}");
     let mut daemon = stage.daemon("cut", &["--body", "hall"]);
     body.says("free to move", 1);
+    // Commands reach the body before the daemon reads its sensors: a page cut in between is one it never touches.
+    wait_for("the daemon hears the body", || stage.is_free("cut"));
     cut(&of_body[0]);
     assert_eq!(body.end().code(), Some(1));
     body.says("cut short by another process; halted, and left", 1);
