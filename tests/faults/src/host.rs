@@ -111,8 +111,6 @@ pub(crate) fn memory_used_up(trial: &mut Trial) -> Result<(), String> {
             // Each wants a place, and a thread.
             callers.extend(greeting(trial.stage.socket(CREATURE)));
             std::thread::sleep(Duration::from_millis(1));
-            // The host may hold up who looks on: when the daemon fell is known to within that.
-            observer.held_up(clock::monotonic().since(alive));
         }
         drop(callers);
         // A process that ends lets go of its socket before it is seen to have ended: the gate may close before.

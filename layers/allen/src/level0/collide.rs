@@ -92,7 +92,7 @@ const PERSON_M: f64 = 0.22;
 const BEHIND: f64 = 0.6;
 /// Nearer than this to where something was a map ago, metres, it is the same: four sigma of a range, and what
 /// the pose is off by after a second.
-const RESTING_M: f64 = 0.15;
+const SAME_M: f64 = 0.15;
 /// What came nearer by less than this, metres, stands: two sigma of the difference of two ranges.
 const STILL_M: f64 = 0.05;
 /// How fast the measured speed follows the odometry, 1/s: over a tenth of a second its slip averages out.
@@ -255,7 +255,7 @@ fn is_a_neighbours(ranges: &[f64; SONARS], index: usize) -> bool {
 /// Whether two arcs are of one place, as near as sonar can tell. Their ends don't count: who walks past the
 /// robot leaves one cone where the next begins.
 fn same_place(a: &[Spot; 3], b: &[Spot; 3]) -> bool {
-    libm::hypot(a[1].x - b[1].x, a[1].y - b[1].y) < RESTING_M
+    libm::hypot(a[1].x - b[1].x, a[1].y - b[1].y) < SAME_M
 }
 
 /// How far from `pose` an arc is, metres.
