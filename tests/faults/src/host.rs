@@ -4,13 +4,14 @@
 
 use std::io::Write;
 use std::os::unix::net::UnixStream;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::time::{Duration, Instant};
 
 use ipc::clock;
-use ipc::control::{Connection, Reply, Request, Versions};
+use ipc::control::{Connection, Reply};
 use rustix::process::{Pid, Resource, Rlimit, Signal, prlimit};
 
+use crate::callers::{Callers, greeting};
 use crate::lives::{at_a_free_moment, body_halts_about};
 use crate::trial::{BODY, CREATURE, Trial, leave_body};
 
@@ -73,7 +74,7 @@ pub(crate) fn memory_limited(trial: &mut Trial) -> Result<(), String> {
         let left = LEFT[(trial.draw() % 2) as usize];
         limit(daemon, Some(address_space(daemon)? + left))?;
         let callers: Vec<Connection> = (0..CALLERS)
-            .filter_map(|_| greeting(trial.stage.socket(CREATURE)).ok())
+            .filter_map(|_| greeting(&trial.stage.socket(CREATURE)).ok())
             .collect();
         let mut layer = trial
             .stage
@@ -104,12 +105,11 @@ pub(crate) fn memory_used_up(trial: &mut Trial) -> Result<(), String> {
         let pid = trial.daemon_pid()?;
         let limited = clock::monotonic();
         limit(pid, Some(0))?;
+        // Each wants a place, and a thread.
+        let callers = Callers::of(trial.stage.socket(CREATURE));
         let (began, mut alive) = (Instant::now(), clock::monotonic());
-        let mut callers = Vec::new();
         while !daemon.has_ended() && began.elapsed() < stage::PATIENCE {
             alive = clock::monotonic();
-            // Each wants a place, and a thread.
-            callers.extend(greeting(trial.stage.socket(CREATURE)));
             std::thread::sleep(Duration::from_millis(1));
         }
         drop(callers);
@@ -126,18 +126,6 @@ pub(crate) fn memory_used_up(trial: &mut Trial) -> Result<(), String> {
     trial.end(&mut daemon)?;
     leave_body(trial, &mut body);
     Ok(())
-}
-
-/// A caller that has said hello, and waits for no answer.
-fn greeting(socket: PathBuf) -> std::io::Result<Connection> {
-    let stream = UnixStream::connect(socket)?;
-    stream.set_read_timeout(Some(Duration::from_millis(1)))?;
-    let mut connection = Connection::over(stream)?;
-    connection.send(&Request::Hello {
-        versions: Versions::ours(),
-        program: "faults".into(),
-    })?;
-    Ok(connection)
 }
 
 /// Bytes of address space that a process has.

@@ -1,5 +1,6 @@
 //! `faults`: breaks real daemons, bodies and layer processes, and measures what comes of it.
 
+mod callers;
 mod causes;
 mod draws;
 mod host;
