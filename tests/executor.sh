@@ -69,7 +69,15 @@ if [ -d /sys/devices/system/cpu/cpu1 ]; then
   [ "$(thread avoid | cut -d' ' -f3)" = 1 ] || fail "avoid must be bound to processor 1, is $(thread avoid)"
   sleep 1.2
   ctl --json status | grep -q '"wake": *"spin 200us"' || fail "status must say how a layer waits"
-  [ "$(thread motor | cut -d' ' -f3)" != 1 ] || [ "$(nproc)" = 1 ] || fail "binding a layer must not bind the motor unit"
+  given=$(awk '/^Cpus_allowed_list/{print $2}' /proc/self/status)
+  if [ "$(nproc)" -gt 1 ]; then
+    [ "$(thread motor | cut -d' ' -f3)" = "$given" ] || fail "a real-time thread without cpu may run anywhere ($given), motor is $(thread motor)"
+    for t in /proc/$daemon/task/*; do
+      case $(cat "$t/comm") in avoid|motor|watchdog) continue ;; esac
+      mask=$((16#$(awk '/^Cpus_allowed:/{gsub(",", "", $2); print substr($2, length($2))}' "$t/status")))
+      [ $((mask >> 1 & 1)) = 0 ] || fail "helper thread $(cat "$t/comm") must keep off processor 1, which a layer is bound to"
+    done
+  fi
   down
 fi
 

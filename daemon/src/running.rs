@@ -177,6 +177,7 @@ pub fn start(
     crew.refusals.extend(host::be_ordinary().err());
     crew.refusals.extend(host::lock_memory().err());
     host::limit_runaway();
+    host::keep_off(creature.layers.iter().filter_map(|layer| layer.cpu));
     let mut helpers = Vec::new();
     if let Some(path) = &settings.record {
         helpers.push(recorder::listener::into_file(shared.clone(), path)?);

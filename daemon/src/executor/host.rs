@@ -2,7 +2,10 @@
 //!
 //! Must never change anything outside this process.
 
+use std::fs::File;
+use std::io::Read;
 use std::num::NonZeroU64;
+use std::sync::OnceLock;
 use std::time::Duration;
 
 use nix::sys::signal::{SigSet, Signal};
@@ -65,12 +68,20 @@ pub fn lockable_bytes() -> Option<u64> {
     }
 }
 
-/// How much more address space this process may take (`RLIMIT_AS`), in bytes; `None` if there is no limit.
+/// How much more address space this process may take (`RLIMIT_AS`), in bytes; `None` if there is no limit. Takes no
+/// memory itself, and where the host does not say how much is taken there is nothing left.
 pub fn address_space_left() -> Option<u64> {
     let limit = getrlimit(Resource::As).current?;
-    let text = std::fs::read_to_string("/proc/self/statm").ok()?;
-    let pages: u64 = text.split_whitespace().next()?.parse().ok()?;
-    Some(limit.saturating_sub(pages * rustix::param::page_size() as u64))
+    let pages = pages_taken().unwrap_or(u64::MAX);
+    Some(limit.saturating_sub(pages.saturating_mul(rustix::param::page_size() as u64)))
+}
+
+/// Pages of address space that this process has.
+fn pages_taken() -> Option<u64> {
+    let mut text = [0; 128];
+    let read = File::open("/proc/self/statm").ok()?.read(&mut text).ok()?;
+    let text = std::str::from_utf8(&text[..read]).ok()?;
+    text.split_whitespace().next()?.parse().ok()
 }
 
 /// Sees to it that a runaway real-time thread ends the process instead of starving the host.
@@ -87,7 +98,13 @@ pub fn limit_runaway() {
 pub fn settle(plan: &Plan) -> Vec<Refusal> {
     tighten_timers();
     refuse_signals();
-    let bound = plan.cpu.map_or(Ok(()), bind);
+    let bound = match plan.cpu {
+        Some(cpu) => bind(cpu),
+        None => {
+            roam();
+            Ok(())
+        }
+    };
     let scheduled = match plan.schedule {
         Schedule::Ordinary => Ok(()),
         Schedule::Fifo(priority) => schedule_fifo(priority),
@@ -195,10 +212,36 @@ pub fn schedule_fifo(priority: u8) -> Result<(), Refusal> {
     })
 }
 
-/// The processors that this process may run on, by the host's numbers.
+/// The processors that this process was given, by the host's numbers, wherever the calling thread may run now.
 pub fn processors() -> Vec<usize> {
-    let set = sched_getaffinity(None).unwrap_or_else(|_| CpuSet::new());
+    let set = given();
     (0..CpuSet::MAX_CPU).filter(|cpu| set.is_set(*cpu)).collect()
+}
+
+/// The processors that the first thread to ask was allowed: those of the process, before any thread was bound.
+fn given() -> &'static CpuSet {
+    static GIVEN: OnceLock<CpuSet> = OnceLock::new();
+    GIVEN.get_or_init(|| sched_getaffinity(None).unwrap_or_else(|_| CpuSet::new()))
+}
+
+/// Keeps the calling thread, and all that it starts from now on, off the processors `taken`, which beating threads are
+/// bound to: whatever else runs there takes their lines of cache. Where no other is left it stays. A beating thread that
+/// is bound to none is not held by this (see [`settle`]).
+pub fn keep_off(taken: impl IntoIterator<Item = usize>) {
+    let mut left = *given();
+    let taken = taken.into_iter().filter(|cpu| *cpu < CpuSet::MAX_CPU);
+    taken.for_each(|cpu| left.unset(cpu));
+    if left.count() > 0 {
+        // Refused: the set was taken smaller meanwhile, and the kernel keeps within it.
+        let _ = sched_setaffinity(None, &left);
+    }
+}
+
+/// Lets the calling thread, and all that it starts from now on, run on every processor that the process was given.
+pub fn roam() {
+    if sched_getaffinity(None).is_ok_and(|now| now != *given()) {
+        let _ = sched_setaffinity(None, given());
+    }
 }
 
 /// Binds the calling thread to processor `cpu`.
@@ -206,6 +249,7 @@ pub fn processors() -> Vec<usize> {
 /// # Errors
 /// The refusal.
 pub fn bind(cpu: usize) -> Result<(), Refusal> {
+    given();
     let mut set = CpuSet::new();
     if cpu < CpuSet::MAX_CPU {
         set.set(cpu);
