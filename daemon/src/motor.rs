@@ -221,8 +221,8 @@ impl Motor {
         for (index, register) in self.registers.iter().enumerate() {
             let motion = self.kind.motion.contains(&index);
             let words = match register.held() {
-                Some((_, words)) if motion => gated(self.kind, index, *words, passage),
-                Some((_, words)) if register.arrived() => *words,
+                Some((_, words)) if motion => gated(self.kind, index, words, passage),
+                Some((_, words)) if register.arrived() => words,
                 _ if motion => [0.0; WORDS_MAX],
                 _ => continue,
             };
@@ -258,10 +258,7 @@ impl Motor {
     }
 
     fn see(&mut self, now: Time) -> Seen {
-        let stamps = self
-            .driven
-            .iter()
-            .map(|&i| self.registers[i].held().map(|(stamp, _)| *stamp));
+        let stamps = self.driven.iter().map(|&i| self.registers[i].stamp());
         let oldest_command = stamps.min().flatten();
         let faults: u64 = self
             .kind

@@ -116,6 +116,16 @@ pub trait Payload: Copy {
     }
     /// The value that `words` stand for.
     fn unpack(words: &Words) -> Self;
+    /// The one word of a message of a [kind of one word](Kind::single).
+    #[inline]
+    fn word(self) -> f64 {
+        self.pack()[0]
+    }
+    /// The value that the one word of a message stands for, of a [kind of one word](Kind::single).
+    #[inline]
+    fn of_word(word: f64) -> Self {
+        Self::unpack(&words_of(&[word]))
+    }
 }
 
 /// A message with no content: its arrival is what it says.
@@ -180,15 +190,23 @@ impl Payload for Pulse {
 impl Payload for bool {
     const KIND: Kind = Kind::Bit;
     fn pack(self) -> Words {
-        words_of(&[f64::from(u8::from(self))])
+        words_of(&[self.word()])
     }
     #[inline]
     fn put(self, words: &mut Words) {
-        words[0] = f64::from(u8::from(self));
+        words[0] = self.word();
+    }
+    #[inline]
+    fn word(self) -> f64 {
+        f64::from(u8::from(self))
     }
     #[inline]
     fn unpack(words: &Words) -> Self {
-        words[0] != 0.0
+        Self::of_word(words[0])
+    }
+    #[inline]
+    fn of_word(word: f64) -> Self {
+        word != 0.0
     }
 }
 
@@ -202,8 +220,16 @@ impl Payload for f64 {
         words[0] = self;
     }
     #[inline]
+    fn word(self) -> f64 {
+        self
+    }
+    #[inline]
     fn unpack(words: &Words) -> Self {
         words[0]
+    }
+    #[inline]
+    fn of_word(word: f64) -> Self {
+        word
     }
 }
 

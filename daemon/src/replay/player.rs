@@ -262,8 +262,8 @@ fn pass(
         register.gather(now, std::mem::forget);
         let motion = kind.motion.contains(&index);
         let words = match register.held() {
-            Some((_, words)) if motion => gated(kind, index, *words, passage),
-            Some((_, words)) if register.arrived() => *words,
+            Some((_, words)) if motion => gated(kind, index, words, passage),
+            Some((_, words)) if register.arrived() => words,
             _ if motion => [0.0; WORDS_MAX],
             _ => continue,
         };

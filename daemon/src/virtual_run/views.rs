@@ -51,7 +51,7 @@ impl VirtualRun {
         let Some(register) = self.register(&self.inputs[index].name) else {
             return;
         };
-        let (delivered, held) = (register.counts().delivered, register.held().copied());
+        let (delivered, held) = (register.counts().delivered, register.held());
         let input = &mut self.inputs[index];
         if delivered != input.delivered {
             input.delivered = delivered;

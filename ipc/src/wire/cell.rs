@@ -74,14 +74,14 @@ impl Cell {
 
     /// Writes a message of `N` words. Only the wire's one writer may call this.
     #[inline]
-    fn put<const N: usize>(&self, stamp: Time, words: &Words) {
+    pub(super) fn put<const N: usize>(&self, stamp: Time, words: &[f64; N]) {
         // Relaxed: only this thread writes the sequence.
         let sequence = self.sequence.load(Ordering::Relaxed);
         self.sequence.store(sequence | 1, Ordering::Relaxed);
         // Pairs with the acquire fence of `take`: whoever sees a new word sees the odd sequence as well.
         fence(Ordering::Release);
         self.stamp.store(stamp.0, Ordering::Relaxed);
-        for (cell, word) in self.words[..N].iter().zip(&words[..N]) {
+        for (cell, word) in self.words[..N].iter().zip(words) {
             cell.store(word.to_bits(), Ordering::Relaxed);
         }
         // Pairs with the acquire load of `take`: whoever sees the even sequence sees the words.
@@ -94,13 +94,13 @@ impl Cell {
     pub(crate) fn write(&self, stamp: Time, words: &Words, kind: Kind) {
         // The lengths that there are, each as code of its own: most messages have one word.
         if kind.single() {
-            return self.put::<1>(stamp, words);
+            return self.put(stamp, &[words[0]]);
         }
         match kind.words() {
-            0 => self.put::<0>(stamp, words),
-            2 => self.put::<2>(stamp, words),
-            3 => self.put::<3>(stamp, words),
-            _ => self.put::<WORDS_MAX>(stamp, words),
+            0 => self.put(stamp, &[]),
+            2 => self.put(stamp, &[words[0], words[1]]),
+            3 => self.put(stamp, &[words[0], words[1], words[2]]),
+            _ => self.put(stamp, words),
         }
     }
 
@@ -123,7 +123,7 @@ impl Cell {
     /// Takes the newest message's first `N` words into `words`, which stay as they were if there never was one
     /// or if none could be read whole in [`TRIES_MAX`] tries; else its number and its stamp.
     #[inline(always)]
-    fn take<const N: usize>(&self, words: &mut [f64]) -> Option<(u64, Time)> {
+    pub(super) fn take<const N: usize>(&self, words: &mut [f64]) -> Option<(u64, Time)> {
         match self.attempt::<N>(words) {
             Attempt::Whole(number, stamp) => Some((number, stamp)),
             Attempt::Empty => None,

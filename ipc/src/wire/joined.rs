@@ -6,8 +6,8 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
+use super::limits::Limits;
 use super::page::Reader;
-use super::register::Limits;
 use crate::clock::{Span, Time};
 use crate::message::{WORDS_MAX, Words};
 use crate::tap::Window;

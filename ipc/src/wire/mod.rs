@@ -8,6 +8,7 @@
 pub mod cell;
 pub mod iceoryx;
 pub mod joined;
+pub mod limits;
 pub mod outlet;
 pub mod page;
 pub mod register;
@@ -16,6 +17,7 @@ mod sync;
 
 pub use cell::{LAYOUT, Reading};
 pub use joined::{AHEAD_MAX, Fate, Plug, Room, TAPS_MAX, TapCounts, TapEnd, TapGauge, TapLook, TapState};
+pub use limits::Limits;
 pub use outlet::{Outlet, OutputCounts};
 pub use page::{Page, Reader, WIRES_MAX, Writer};
-pub use register::{InputCounts, Limits, Register, Took};
+pub use register::{InputCounts, Register, Took};

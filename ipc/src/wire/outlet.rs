@@ -24,8 +24,7 @@ pub struct OutputCounts {
     pub inhibited: u64,
 }
 
-/// The writing end behind one output port. Its words come last: a beat touches the first of them alone where
-/// messages are one word.
+/// The writing end behind one output port. Only messages of several words, which are rare, lie elsewhere.
 #[derive(Debug)]
 #[repr(C)]
 pub struct Outlet {
@@ -34,17 +33,20 @@ pub struct Outlet {
     staged: bool,
     taps: Vec<Joined>,
     counts: OutputCounts,
-    /// The words of the message staged, or of the last one.
-    words: Words,
+    /// The message staged, or the last one, if it is of a kind of one word.
+    word: f64,
+    /// The message staged, or the last one, if it is of another kind.
+    words: Option<Box<Words>>,
 }
 
 impl Outlet {
     /// An outlet to the wire of `writer`.
     pub fn new(writer: Writer) -> Outlet {
         Outlet {
-            writer,
             staged: false,
-            words: [0.0; WORDS_MAX],
+            word: 0.0,
+            words: (!writer.kind().single()).then(|| Box::new([0.0; WORDS_MAX])),
+            writer,
             taps: Vec::new(),
             counts: OutputCounts::default(),
         }
@@ -67,7 +69,10 @@ impl Outlet {
     /// When the module emits twice on one port in one step.
     pub fn stage(&mut self, words: Words) {
         self.mark();
-        self.words = words;
+        match &mut self.words {
+            None => self.word = words[0],
+            Some(all) => **all = words,
+        }
     }
 
     /// Keeps the message for the end of the beat, as [`Outlet::stage`] does.
@@ -77,7 +82,10 @@ impl Outlet {
     #[inline]
     pub fn emit<T: Payload>(&mut self, message: T) {
         self.mark();
-        message.put(&mut self.words);
+        match &mut self.words {
+            None => self.word = message.word(),
+            Some(all) => message.put(all),
+        }
     }
 
     #[inline]
@@ -104,7 +112,10 @@ impl Outlet {
         if !std::mem::take(&mut self.staged) || !self.open(u) {
             return false;
         }
-        self.writer.write(u, &self.words);
+        match &self.words {
+            None => self.writer.write_word(u, self.word),
+            Some(words) => self.writer.write(u, words),
+        }
         self.counts.emitted += 1;
         true
     }
@@ -155,8 +166,11 @@ impl Outlet {
 
     /// The words of the message that waits for the end of the beat, or of the last one that did.
     #[inline]
-    pub fn words(&self) -> &Words {
-        &self.words
+    pub fn words(&self) -> &[f64] {
+        match &self.words {
+            None => std::slice::from_ref(&self.word),
+            Some(words) => &words[..],
+        }
     }
 
     /// The kind of message on the wire.

@@ -152,7 +152,15 @@ impl Writer {
         unsafe { self.cell.as_ref() }.write(stamp, words, self.kind);
     }
 
+    /// Writes a message of one word, on a wire of such a [kind](Kind::single).
+    #[inline]
+    pub(super) fn write_word(&mut self, stamp: Time, word: f64) {
+        // SAFETY: `_page` keeps the cell mapped.
+        unsafe { self.cell.as_ref() }.put(stamp, &[word]);
+    }
+
     /// The kind of message on this wire.
+    #[inline]
     pub fn kind(&self) -> Kind {
         self.kind
     }
@@ -191,13 +199,16 @@ impl Reader {
     /// Takes the newest message's words into `words` if it is not number `seen`; else, and where none could be
     /// read whole, they stay as they were. Its number and stamp. The common answer, none, costs one load.
     #[inline(always)]
-    pub(super) fn take_newer(&self, seen: u64, words: &mut [f64]) -> Option<(u64, Time)> {
+    pub(super) fn take_newer<const N: usize>(&self, seen: u64, words: &mut [f64; N]) -> Option<(u64, Time)> {
         // SAFETY: `_page` keeps the cell mapped.
         let cell = unsafe { self.cell.as_ref() };
         if !cell.changed(seen) {
             return None;
         }
-        let taken = cell.take_words(self.kind, words);
+        let taken = match N {
+            1 => cell.take::<1>(words),
+            _ => cell.take_words(self.kind, words),
+        };
         taken.filter(|(number, _)| *number != seen)
     }
 

@@ -12,32 +12,11 @@ use std::sync::Arc;
 use super::joined::{
     Fate, Joined, Plug, TapEnd, TapGauge, TapLook, TapState, join, plausible, release, sweep, window_of,
 };
+use super::limits::Limits;
 use super::page::Reader;
 use crate::clock::Time;
-use crate::message::{Kind, WORDS_MAX, Words};
+use crate::message::{Kind, Payload, WORDS_MAX, Words};
 use crate::tap::{self, Window};
-
-/// What an input port takes: kind and range of every number.
-#[derive(Clone, Copy, Debug)]
-pub struct Limits {
-    /// The kind of message.
-    pub kind: Kind,
-    /// Smallest value of any number in it.
-    pub low: f64,
-    /// Largest value of any number in it.
-    pub high: f64,
-}
-
-impl Limits {
-    #[inline]
-    pub(super) fn accept(&self, words: &[f64]) -> bool {
-        if self.kind == Kind::Number {
-            // The bounds are finite, so what is no number or infinite is not between them.
-            return (self.low..=self.high).contains(&words[0]);
-        }
-        self.kind.accepts(words, self.low, self.high)
-    }
-}
 
 /// What was counted at one input.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -52,15 +31,16 @@ pub struct InputCounts {
 
 /// The register behind one input port.
 ///
-/// What a beat touches for a message of one word lies in the first two lines of the processor's cache: with a
-/// thousand modules a beat waits for memory, not for arithmetic.
+/// It is two lines of the processor's cache: with a thousand modules a beat waits for memory, not for arithmetic.
+/// Only messages of several words, which are rare, lie elsewhere.
 #[derive(Debug)]
 #[repr(C, align(64))]
 pub struct Register {
-    limits: Limits,
     wire: Option<Reader>,
     seen: u64,
-    taps: Vec<Joined>,
+    low: f64,
+    high: f64,
+    kind: Kind,
     /// Whether a message is held.
     holds: bool,
     /// Whether a message was delivered since the last gather.
@@ -70,12 +50,17 @@ pub struct Register {
     looked: Option<Fate>,
     /// Whether that message is the one after the last that was looked at.
     next: bool,
+    /// The stamp of the message held.
+    stamp: Time,
+    /// The message held, if it is of a kind of one word.
+    word: f64,
+    /// The message held, if it is of another kind.
+    words: Option<Box<Words>>,
+    taps: Vec<Joined>,
     counts: InputCounts,
-    /// The message held, with its stamp.
-    held: (Time, Words),
 }
 
-const _: () = assert!(std::mem::offset_of!(Register, held) + size_of::<(Time, f64)>() <= 128);
+const _: () = assert!(size_of::<Register>() == 128);
 
 /// What a register took in of its wire at its last look, in a word.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -99,11 +84,9 @@ impl Register {
     /// A register for messages within `limits`, fed by `wire` if the port is connected.
     pub fn new(limits: Limits, wire: Option<Reader>) -> Register {
         Register {
-            limits: Limits {
-                low: limits.low.max(f64::MIN),
-                high: limits.high.min(f64::MAX),
-                ..limits
-            },
+            low: limits.low.max(f64::MIN),
+            high: limits.high.min(f64::MAX),
+            kind: limits.kind,
             wire,
             seen: 0,
             taps: Vec::new(),
@@ -113,7 +96,9 @@ impl Register {
             looked: None,
             next: false,
             counts: InputCounts::default(),
-            held: (Time::ZERO, [0.0; WORDS_MAX]),
+            stamp: Time::ZERO,
+            word: 0.0,
+            words: (!limits.kind.single()).then(|| Box::new([0.0; WORDS_MAX])),
         }
     }
 
@@ -121,7 +106,7 @@ impl Register {
     /// and has come back with new ones. The message held stays until a newer one is delivered. A wire that carries
     /// something else is handed back itself.
     pub fn connect(&mut self, wire: Reader) -> Option<Reader> {
-        if wire.kind() != self.limits.kind {
+        if wire.kind() != self.kind {
             return Some(wire);
         }
         self.seen = 0;
@@ -154,7 +139,7 @@ impl Register {
     #[inline]
     pub fn look(&mut self, now: Time, gone: impl FnMut(TapEnd)) {
         // Most messages are one word: those never touch the other eleven.
-        if self.limits.kind.single() {
+        if self.kind.single() {
             self.look_at::<1>(now, gone);
         } else {
             self.look_at_many(now, gone);
@@ -179,8 +164,9 @@ impl Register {
             return;
         }
         let mut fresh = false;
+        let limits = self.limits();
         for tap in &mut self.taps {
-            tap.look(now, Some(&self.limits));
+            tap.look(now, Some(&limits));
             fresh |= tap.fresh;
         }
         if fresh {
@@ -252,7 +238,7 @@ impl Register {
         if !self.holds {
             return false;
         }
-        let held = self.held.0;
+        let held = self.stamp;
         // A message of a tap that stands further along is not the lower tap's to reject.
         let from = self
             .taps
@@ -268,13 +254,13 @@ impl Register {
     /// The stamp of the existing wire's newest message, if it was not seen before and is one; its words are
     /// then those `incoming`.
     #[inline(always)]
-    fn newest_original(&mut self, now: Time, incoming: &mut [f64]) -> Option<Time> {
+    fn newest_original<const N: usize>(&mut self, now: Time, incoming: &mut [f64; N]) -> Option<Time> {
         self.looked = None;
         let (number, stamp) = self.wire.as_ref()?.take_newer(self.seen, incoming)?;
         self.next = number.wrapping_sub(self.seen) == 1;
         self.seen = number;
         match plausible(stamp, now) {
-            Some(stamp) if self.limits.accept(incoming) => {
+            Some(stamp) if self.limits().accept(incoming) => {
                 self.looked = Some(Fate::Delivered);
                 Some(stamp)
             }
@@ -305,19 +291,55 @@ impl Register {
         self.counts.delivered += 1;
         // Writes of other threads may be seen out of order: what is older than the message held was
         // overwritten by it.
-        if self.holds && stamp < self.held.0 {
+        if self.holds && stamp < self.stamp {
             return;
         }
-        self.held.1[..N].copy_from_slice(words);
-        self.held.0 = stamp;
+        match &mut self.words {
+            None => self.word = words[0],
+            Some(all) => all[..N].copy_from_slice(words),
+        }
+        self.stamp = stamp;
         self.holds = true;
         self.pending = true;
     }
 
     /// The message held, with its stamp; `None` until the first was delivered.
     #[inline]
-    pub fn held(&self) -> Option<&(Time, Words)> {
-        self.holds.then_some(&self.held)
+    pub fn held(&self) -> Option<(Time, Words)> {
+        let words = || match &self.words {
+            Some(words) => **words,
+            None => std::array::from_fn(|k| if k == 0 { self.word } else { 0.0 }),
+        };
+        self.holds.then(|| (self.stamp, words()))
+    }
+
+    /// What the message held says; `None` until the first was delivered, and from a register whose messages have another
+    /// number of words.
+    #[inline]
+    pub fn value<T: Payload>(&self) -> Option<T> {
+        if !self.holds {
+            return None;
+        }
+        match &self.words {
+            None if T::KIND.single() => Some(T::of_word(self.word)),
+            Some(words) if !T::KIND.single() => Some(T::unpack(words)),
+            _ => None,
+        }
+    }
+
+    /// When the message held was written; `None` until the first was delivered.
+    #[inline]
+    pub fn stamp(&self) -> Option<Time> {
+        self.holds.then_some(self.stamp)
+    }
+
+    #[inline(always)]
+    fn limits(&self) -> Limits {
+        Limits {
+            kind: self.kind,
+            low: self.low,
+            high: self.high,
+        }
     }
 
     /// Whether a message was delivered at the last [`Register::gather`].

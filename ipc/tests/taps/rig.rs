@@ -27,7 +27,7 @@ pub(crate) fn words(tick: u64, source: usize) -> Words {
     words
 }
 
-pub(crate) fn said(held: Option<&(Time, Words)>) -> Option<(u64, usize)> {
+pub(crate) fn said(held: Option<(Time, Words)>) -> Option<(u64, usize)> {
     held.map(|(stamp, words)| {
         assert_eq!(stamp.0, words[0] as u64, "a message keeps its own stamp");
         (stamp.0, words[1] as usize)

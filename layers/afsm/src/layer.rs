@@ -68,7 +68,6 @@ pub struct Hand {
 
 /// A module as it stands in a layer.
 struct Seat {
-    name: String,
     machine: Box<dyn Module>,
     inputs: Range<usize>,
     outputs: Range<usize>,
@@ -79,6 +78,8 @@ struct Seat {
 /// A layer that can be stepped.
 pub struct RunningLayer {
     seats: Vec<Seat>,
+    /// What the modules are called, by seat: no beat asks for it.
+    names: Vec<String>,
     order: Vec<usize>,
     registers: Vec<Register>,
     outlets: Vec<Outlet>,
@@ -100,6 +101,7 @@ impl RunningLayer {
         let (return_in, return_out) = rtrb::RingBuffer::new(COMMANDS_MAX);
         let layer = RunningLayer {
             seats: Vec::new(),
+            names: Vec::new(),
             order: Vec::new(),
             registers: Vec::new(),
             outlets: Vec::new(),
@@ -141,8 +143,8 @@ impl RunningLayer {
         self.registers.extend(registers);
         self.outlets.extend(outlets);
         self.order.push(self.seats.len());
+        self.names.push(name.into());
         self.seats.push(Seat {
-            name: name.into(),
             machine,
             inputs,
             outputs,
@@ -192,10 +194,8 @@ impl RunningLayer {
 
     /// The state of the module called `name`.
     pub fn state_of(&self, name: &str) -> Option<&'static str> {
-        self.seats
-            .iter()
-            .find(|s| s.name == name)
-            .map(|s| s.machine.state())
+        let seat = self.names.iter().position(|n| n == name)?;
+        Some(self.seats[seat].machine.state())
     }
 
     /// The n-th input's register: inputs count module by module as they were seated, reset lines included.
@@ -243,7 +243,7 @@ impl RunningLayer {
         let outlet = &mut self.outlets[output];
         let wrote = outlet.put(now, words, |end| give_back(&mut self.returned, end));
         if let Some(tracer) = &mut self.tracer {
-            tracer.alone(output, outlet, Some((wrote, words)));
+            tracer.alone(output, outlet, Some((wrote, &words[..])));
         }
         wrote
     }

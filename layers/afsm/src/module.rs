@@ -54,13 +54,13 @@ impl Beat<'_> {
     /// The newest message that ever arrived, however old.
     #[inline]
     pub fn latest<T: Payload>(&self, port: In<T>) -> Option<T> {
-        self.inputs[port.index].held().map(|(_, words)| T::unpack(words))
+        self.inputs[port.index].value()
     }
 
     /// When the newest message was written to its wire.
     #[inline]
     pub fn stamp<T: Payload>(&self, port: In<T>) -> Option<Time> {
-        self.inputs[port.index].held().map(|(stamp, _)| *stamp)
+        self.inputs[port.index].stamp()
     }
 
     /// Emits a message at the end of this beat.

@@ -132,7 +132,7 @@ fn register(fresh: bool, tapped: bool) -> Box<dyn FnMut()> {
             writer.write(now, black_box(&message));
         }
         register.gather(now, drop);
-        black_box(register.held());
+        black_box(register.value::<f64>());
     })
 }
 

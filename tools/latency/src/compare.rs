@@ -3,10 +3,11 @@
 //! Must never compare what was not measured side by side, but a tap's effect with what it may take.
 
 use crate::across::Means;
+use crate::company::Company;
 use crate::gate::{self, Compared, LIMITS};
 use crate::pair::{Contest, Side};
 use crate::ratio::Ratio;
-use crate::run::{Asked, Company, Outcome};
+use crate::run::{Asked, Outcome};
 
 /// The part of a side that a comparison looks at.
 type Part = fn(&Side) -> &hdrhistogram::Histogram<u64>;

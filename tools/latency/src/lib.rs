@@ -7,6 +7,7 @@ pub mod across;
 pub mod cases;
 pub mod churn;
 pub mod command;
+pub mod company;
 pub mod compare;
 pub mod creature;
 pub mod cyclictest;

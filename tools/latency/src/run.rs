@@ -6,17 +6,19 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant, SystemTime};
 
+use daemon::executor::host;
 use indicatif::{ProgressBar, ProgressStyle};
 use ipc::clock::Span;
 use ipc::wiring::creature::Wake;
 
 use crate::across::{self, Heard};
-use crate::churn::{self, Churn};
+use crate::churn::Churn;
 use crate::command::Reference;
+use crate::company::{Company, intervals};
 use crate::compare;
 use crate::creature::{self, Alive, Kept};
 use crate::gate::{Compared, Verdict};
-use crate::load::{CHURN_EVERY, Load, Loaded};
+use crate::load::{Load, Loaded};
 use crate::neighbour::Neighbour;
 use crate::pair::{self, CONTESTS, Contest, Round};
 use crate::plant::Plant;
@@ -78,36 +80,6 @@ pub struct Outcome {
     pub interrupted: bool,
 }
 
-/// Whom an interval had for company.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Company {
-    /// Nobody.
-    Nobody,
-    /// Those who came and went at a neighbour: what they cost the host.
-    Elsewhere,
-    /// Those who came and went at the creature measured.
-    Here,
-}
-
-impl Company {
-    /// What follows each other under churn.
-    pub const TURNS: [Company; 3] = [Company::Nobody, Company::Elsewhere, Company::Here];
-}
-
-/// Most turns that the time of the creature is cut into: as many make a median.
-const TURNS_MAX: u32 = 7;
-
-/// How many intervals a time is cut into: whole turns, and under churn none so short that nobody comes and goes in it.
-fn intervals(length: Duration, churning: bool) -> u32 {
-    let all = Company::TURNS.len() as u32;
-    let least = Duration::from_nanos(CHURN_EVERY.0) * churn::EVENTS * all;
-    let turns = match churning {
-        true => (length.as_secs_f64() / least.as_secs_f64()) as u32,
-        false => TURNS_MAX,
-    };
-    turns.clamp(1, TURNS_MAX) * all
-}
-
 /// How many times the asked-for rounds are added at most where a limit is not kept.
 pub const ROUNDS_MORE: usize = 2;
 
@@ -148,6 +120,8 @@ pub fn run(asked: &Asked) -> Result<Outcome, String> {
     let load = Loaded::start(asked.load, asked.cpu).map_err(|e| format!("starting a load: {e}"))?;
     if asked.length > Duration::ZERO {
         measure_creature(asked, &leave, &progress, &mut outcome)?;
+        // Whoever is started from here on is bound by what it is told, not by what the creature kept off.
+        host::roam();
     }
     let setting = pair::Setting {
         cpu: asked.cpu,
@@ -400,19 +374,5 @@ impl Progress {
 
     fn end(&self) {
         self.bar.finish_and_clear();
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn everybody_who_comes_in_an_interval_is_gone_at_its_end() {
-        let seconds = Duration::from_secs;
-        assert_eq!(intervals(seconds(12), true), 9);
-        assert_eq!(intervals(seconds(60), true), 21);
-        assert_eq!(intervals(seconds(1), true), 3);
-        assert_eq!(intervals(seconds(1), false), 21);
     }
 }

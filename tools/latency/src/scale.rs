@@ -58,20 +58,23 @@ pub fn command(args: &ScaleArgs, json: bool) -> ExitCode {
         return ExitCode::FAILURE;
     };
     let _ = host::lock_memory();
+    host::keep_off([cpu]);
     let lengths = Duration::from_secs(args.seconds);
-    let paced = [(1, 10), (1, 100), (100, 10)].map(|(layers, each)| pace(cpu, layers, each, lengths));
-    let mut shown = Vec::new();
-    for result in paced {
-        match result {
-            Ok(value) => shown.push(value),
-            Err(message) => {
-                eprintln!("subsumectl scale: {message}");
-                return ExitCode::FAILURE;
-            }
+    let paced = [(1, 10), (1, 100), (100, 10)].into_iter();
+    let paced: Result<Vec<Value>, String> = paced
+        .map(|(layers, each)| pace(cpu, layers, each, lengths))
+        .collect();
+    let waking = beat_at_1khz(cpu, Nothing, lengths);
+    let (paced, waking) = match (paced, waking) {
+        (Ok(paced), Ok(waking)) => (paced, waking),
+        (Err(message), _) | (_, Err(message)) => {
+            eprintln!("subsumectl scale: {message}");
+            return ExitCode::FAILURE;
         }
-    }
+    };
     let report = json!({
-        "cpu": cpu, "bound": bound.map(|b| b.to_string()), "hot": line, "at_1khz": shown, "memory": weight,
+        "cpu": cpu, "bound": bound.map(|b| b.to_string()), "hot": line, "at_1khz": paced,
+        "waking_at_1khz": waking, "memory": weight,
     });
     if json {
         println!("{report:#}");
@@ -135,6 +138,13 @@ impl Beats for Group {
     }
 }
 
+/// Nothing to do but to wake.
+struct Nothing;
+
+impl Beats for Nothing {
+    fn beat(&mut self, _: Time) {}
+}
+
 /// A creature at 1 kHz, its wires in shared memory: what share of a processor it takes, how long a beat is.
 fn pace(cpu: usize, layers: usize, each: usize, length: Duration) -> Result<Value, String> {
     let modules = layers * each;
@@ -142,6 +152,20 @@ fn pace(cpu: usize, layers: usize, each: usize, length: Duration) -> Result<Valu
     let domain = Domain::join(&name).map_err(|e| e.to_string())?;
     let owned = domain.own(&name, 2 * modules).map_err(|e| e.to_string())?;
     let rig = Rig::on(owned.page(), layers, each);
+    let mut paced = beat_at_1khz(cpu, Group(rig), length)?;
+    drop(owned);
+    domain.leave();
+    for (key, count) in [("layers", layers), ("modules", modules), ("wires", 2 * modules)] {
+        paced[key] = json!(count);
+    }
+    for (key, of) in [("module_p50_ns", "beat_p50_ns"), ("module_p10_ns", "beat_p10_ns")] {
+        paced[key] = json!(paced[of].as_f64().unwrap_or(0.0) / modules as f64);
+    }
+    Ok(paced)
+}
+
+/// A thread that beats at 1 kHz: what share of a processor it takes, and what share its beats do without the waking.
+fn beat_at_1khz(cpu: usize, beats: impl Beats, length: Duration) -> Result<Value, String> {
     let plan = Plan {
         name: "group".into(),
         period: Span::millis(1),
@@ -155,30 +179,29 @@ fn pace(cpu: usize, layers: usize, each: usize, length: Duration) -> Result<Valu
     let (gauge, stop) = (Arc::new(BeatGauge::default()), Arc::new(AtomicBool::new(false)));
     let begin = (clock::monotonic() + Span::millis(20)).off_tick();
     let halt = Arc::new(HaltChannel::default());
-    let mut thread = executor::start(plan, begin, Group(rig), vec![gauge.clone()], halt, stop.clone())
+    let mut thread = executor::start(plan, begin, beats, vec![gauge.clone()], halt, stop.clone())
         .map_err(|e| e.to_string())?;
     std::thread::sleep(Duration::from_millis(200));
     let refusals: Vec<String> = thread.refusals.iter().map(ToString::to_string).collect();
+    while thread.samples[0].pop().is_ok() {}
     let (ran, beats, began) = (ran(thread.tid), gauge.counts().beats, Instant::now());
-    let mut step = histogram();
+    let (mut step, mut in_beats) = (histogram(), Span::ZERO);
     while began.elapsed() < length {
         std::thread::sleep(Duration::from_millis(100));
         while let Ok(sample) = thread.samples[0].pop() {
             step.saturating_record(sample.step.0.max(1));
+            in_beats = in_beats + sample.step;
         }
     }
-    let (ran, passed) = (self::ran(thread.tid) - ran, began.elapsed());
+    let (ran, passed) = (self::ran(thread.tid) - ran, began.elapsed().as_nanos() as f64);
     let counts = gauge.counts();
     stop.store(true, Ordering::Relaxed);
     thread.join();
-    drop(owned);
-    domain.leave();
-    let per_module = |q: f64| step.value_at_quantile(q) as f64 / modules as f64;
     Ok(json!({
-        "layers": layers, "modules": modules, "wires": 2 * modules, "beats": counts.beats - beats, "missed": counts.missed,
-        "processor_share": ran as f64 / passed.as_nanos() as f64,
-        "beat_p50_ns": step.value_at_quantile(0.5), "beat_p99_ns": step.value_at_quantile(0.99),
-        "module_p50_ns": per_module(0.5), "module_p10_ns": per_module(0.1), "refusals": refusals,
+        "beats": counts.beats - beats, "missed": counts.missed,
+        "processor_share": ran as f64 / passed, "beats_share": in_beats.0 as f64 / passed,
+        "beat_p10_ns": step.value_at_quantile(0.1), "beat_p50_ns": step.value_at_quantile(0.5),
+        "beat_p99_ns": step.value_at_quantile(0.99), "refusals": refusals,
     }))
 }
 
@@ -241,16 +264,24 @@ fn print(report: &Value) {
         hot("r_squared")
     );
     println!(
-        "| at 1 kHz | wires | share of a processor | beat p50, µs | p99, µs | a module, ns |\n|---|---:|---:|---:|---:|---:|"
+        "| at 1 kHz | wires | share of a processor | of it in beats | beat p50, µs | p99, µs | a module, ns |\n|---|---:|---:|---:|---:|---:|---:|"
+    );
+    println!(
+        "| nothing: only waking | 0 | {:.2} % | | | | |",
+        100.0
+            * report["waking_at_1khz"]["processor_share"]
+                .as_f64()
+                .unwrap_or(0.0)
     );
     for row in report["at_1khz"].as_array().into_iter().flatten() {
         let f = |key: &str| row[key].as_f64().unwrap_or(0.0);
         println!(
-            "| {} modules in {} layers | {} | {:.2} % | {:.2} | {:.2} | {:.1} |",
+            "| {} modules in {} layers | {} | {:.2} % | {:.2} % | {:.2} | {:.2} | {:.1} |",
             f("modules"),
             f("layers"),
             f("wires"),
             100.0 * f("processor_share"),
+            100.0 * f("beats_share"),
             f("beat_p50_ns") / 1e3,
             f("beat_p99_ns") / 1e3,
             f("module_p50_ns")

@@ -2,7 +2,6 @@
 //!
 //! Must never make the usual case pay for the rare one: a beat of a hundred wires comes by here a hundred times and more.
 
-use ipc::message::Words;
 use ipc::wire::{Outlet, Register, Took};
 use ipc::wiring::creature::How;
 
@@ -52,7 +51,7 @@ impl Tracer {
 
     /// Outlet `slot` was committed or handed a message by itself: whether it wrote it, and its words. That may be between
     /// two beats, where nobody hears it.
-    pub fn alone(&mut self, slot: usize, outlet: &Outlet, message: Option<(bool, &Words)>) {
+    pub fn alone(&mut self, slot: usize, outlet: &Outlet, message: Option<(bool, &[f64])>) {
         self.forget();
         self.inhibitors(outlet);
         match message {

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use ipc::clock::{Span, Time};
-use ipc::message::{Kind, Words};
+use ipc::message::Kind;
 use ipc::wire::{Fate, TapLook};
 use ipc::wiring::creature::How;
 use rtrb::Producer;
@@ -166,7 +166,7 @@ impl Tracer {
 
     /// Outlet `slot` wrote `words` as the message after its last, its only one in this beat. Outlets come in order.
     #[inline]
-    pub fn wrote_next(&mut self, slot: usize, kind: Kind, words: &Words) {
+    pub fn wrote_next(&mut self, slot: usize, kind: Kind, words: &[f64]) {
         if let Some(next) = self.next.get_mut(self.registers + slot) {
             *next = 1;
         }
@@ -177,7 +177,7 @@ impl Tracer {
     }
 
     #[inline(never)]
-    fn follow_all(&mut self, kind: Kind, words: &Words) {
+    fn follow_all(&mut self, kind: Kind, words: &[f64]) {
         words[..kind.words()].iter().for_each(|word| self.follow(*word));
     }
 
