@@ -68,7 +68,7 @@ if [ -d /sys/devices/system/cpu/cpu1 ]; then
   up "$bin/subsumed" --creature "$work/spins.toml"
   [ "$(thread avoid | cut -d' ' -f3)" = 1 ] || fail "avoid must be bound to processor 1, is $(thread avoid)"
   sleep 1.2
-  ctl --json status | grep -q '"wake": *"spin 200us"' || fail "status must say how a layer waits"
+  grep -q '"wake": *"spin 200us"' <<<"$(ctl --json status)" || fail "status must say how a layer waits"
   given=$(awk '/^Cpus_allowed_list/{print $2}' /proc/self/status)
   if [ "$(nproc)" -gt 1 ]; then
     [ "$(thread motor | cut -d' ' -f3)" = "$given" ] || fail "a real-time thread without cpu may run anywhere ($given), motor is $(thread motor)"
@@ -85,7 +85,7 @@ fi
 creature deadline 'policy = "deadline"' ''
 up "$bin/subsumed" --creature "$work/deadline.toml"
 sleep 1
-if ctl --json status | grep -q 'sched_setattr(SCHED_DEADLINE.*refused'; then echo "skipped: SCHED_DEADLINE (refused here)"; else
+if grep -q 'sched_setattr(SCHED_DEADLINE.*refused' <<<"$(ctl --json status)"; then echo "skipped: SCHED_DEADLINE (refused here)"; else
   [ "$(thread avoid | cut -d' ' -f1)" = 6 ] || fail "avoid must be SCHED_DEADLINE, is $(thread avoid)"
 fi
 beats=$(ctl --json status | tr ',{}' '\n\n\n' | sed -n 's/^ *"beats": *//p' | head -1)

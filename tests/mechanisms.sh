@@ -53,14 +53,15 @@ until_shown "level 1 goes by its headings" 'drives.heading' ctl holders
 echo "== commands while it drives"
 adroit apply 'threshold of rm explore is 0.1. rm nowhere reports to nothing.' && fail "a command is all or nothing"
 [ -z "$(adroit list)" ] || fail "nothing was to be applied"
-adroit apply 'threshold of rm explore is 5. threshold of rm seek-space is 5. threshold of rm rest is 5.' | grep -qE 'after evaluation [1-9]' \
+answer=$(adroit apply 'threshold of rm explore is 5. threshold of rm seek-space is 5. threshold of rm rest is 5.')
+grep -qE 'after evaluation [1-9]' <<<"$answer" \
   || fail "the evaluation it was applied after must be told"
 sleep 0.5
 [ "$(said)" -le 1 ] || fail "with no drive above its threshold nothing is said"
-adroit list | grep -q 'threshold of rm explore is 5' || fail "the list must show it"
+grep -q 'threshold of rm explore is 5' <<<"$(adroit list)" || fail "the list must show it"
 adroit save >"$work/saved.adroit"
 "$bin/subsumectl" adroit check --robot drives "$work/saved.adroit" || fail "what is saved must load"
-adroit undo | grep -q 'taken back' || fail "the latest command can be taken back"
+grep -q 'taken back' <<<"$(adroit undo)" || fail "the latest command can be taken back"
 [ -z "$(adroit list)" ] || fail "the list must be empty again"
 sleep 0.5
 [ "$(said)" -gt 1 ] || fail "what is taken back has no effect any more"
@@ -93,14 +94,14 @@ adroit apply 'rm idle reports to top. add stimulus always to rm idle with magnit
   && fail "an RM without anything to control is an error: $(cat "$work/told")"
 adroit apply 'rm wait reports to top. add stimulus always to rm wait with magnitude 50. mcu arm reports to rm wait.' \
   || fail "the hierarchy in the daemon takes commands"
-adroit list | grep -q 'rm wait reports to top' || fail "the list must show it"
+grep -q 'rm wait reports to top' <<<"$(adroit list)" || fail "the list must show it"
 until_shown "commanded to wait, it stands" '#[0-9]+ +0(\.0+)?( |$)' ctl watch nest.wheel --count 1
-curl -s "http://127.0.0.1:$(sed -n 's#.*http://127.0.0.1:\([0-9]*\)/#\1#p' "$work/nest.log")/api/plan" | grep -q '"wait"' \
+port=$(sed -n 's#.*http://127.0.0.1:\([0-9]*\)/#\1#p' "$work/nest.log")
+grep -q '"wait"' <<<"$(curl -s "http://127.0.0.1:$port/api/plan")" \
   || fail "the page must draw the hierarchy that runs"
 adroit undo || fail "and takes them back"
 until_shown "and drives on" 'nest.wheel .* 0\.[1-9]' ctl wires
 [ "$(stat -c %a "$work/commands")" = 600 ] || fail "commands are the owner's alone"
-port=$(sed -n 's#.*http://127.0.0.1:\([0-9]*\)/#\1#p' "$work/nest.log")
 if command -v chromium >/dev/null; then
   timeout 90 chromium --headless --no-sandbox --disable-gpu --disable-quic --no-first-run --disable-background-networking \
     --disable-component-update --disable-sync --user-data-dir="$work/chromium" --window-size="${WINDOW:-1400,1500}" \

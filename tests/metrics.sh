@@ -34,15 +34,15 @@ scrape() { curl -sf "$address" >"$work/$1.txt" || fail "a scrape over the port";
 has() { grep -qxF "$2" "$work/$1.txt" || fail "$1: expected: $2"; }
 scrape before
 "$bin/allen-wander" --creature scraped >"$work/wander.log" 2>&1 & wander=$!
-for _ in $(seq 100); do ctl status | grep -q 'wander .*attached' && break; sleep 0.1; done
+for _ in $(seq 100); do grep -q 'wander .*attached' <<<"$(ctl status)" && break; sleep 0.1; done
 ctl halt >/dev/null
 sleep 1.5
 scrape during
 kill -9 "$wander"; wait "$wander" 2>/dev/null || true; wander=""
-for _ in $(seq 100); do ctl status | grep -q 'wander .*attached' || break; sleep 0.1; done
+for _ in $(seq 100); do grep -q 'wander .*attached' <<<"$(ctl status)" || break; sleep 0.1; done
 sleep 0.3
 curl -sf --unix-socket "$work/metrics.sock" http://creature/metrics >"$work/after.txt" || fail "a scrape over the socket"
-curl -sI "$address" | grep -qi '^content-type: application/openmetrics-text; version=1.0.0' || fail "the media type"
+grep -qi '^content-type: application/openmetrics-text; version=1.0.0' <<<"$(curl -sI "$address")" || fail "the media type"
 has before 'subsumed_attached_layers{creature="scraped"} 0'
 has before 'subsumed_halts_total{creature="scraped",cause="emergency stop"} 0'
 has during 'subsumed_attached_layers{creature="scraped"} 1'

@@ -31,7 +31,7 @@ fail() {
 # Waits for what must come; the time is a way out, no criterion.
 until_true() { local what=$1 _; shift; for _ in $(seq 300); do "$@" >/dev/null 2>&1 && return; sleep 0.1; done; fail "never came: $what"; }
 ctl() { box subsumectl --creature tom "$@"; }
-attached() { ctl status | grep -q "wander .*attached"; }
+attached() { grep -q "wander .*attached" <<<"$(ctl status)"; }
 messages() { ctl --json wires | tr '{' '\n' | sed -n 's/.*"messages":\([0-9]*\).*"wire":"body.odometry".*/\1/p'; }
 goes_on() { local before; before=$(messages); sleep 0.3; [ "$(messages)" -gt "$before" ]; }
 # What differs from the host, but for logs, caches and dpkg's own book; what lies in memory; and who has an account.
@@ -117,7 +117,7 @@ new=$(show subsumed@tom MainPID)
 until_true "the layer attaches again" attached
 [ "$(show subsumed-layer@tom-wander MainPID)" != "$layer" ] || fail "the layer must be started with the new program"
 until_true "tom moves again" goes_on
-box journalctl -q --no-pager -o cat -u subsumed@tom SUBSUMED_KIND=halt | grep -q 'the body is halted: .*shutdown' || fail "the body must be halted for the upgrade"
+grep -q 'the body is halted: .*shutdown' <<<"$(box journalctl -q --no-pager -o cat -u subsumed@tom SUBSUMED_KIND=halt)" || fail "the body must be halted for the upgrade"
 ok "upgraded while running: body halted, new programs, layer back"
 
 box dpkg -r subsumed >"$stage/dpkg.log" 2>&1 || { cat "$stage/dpkg.log"; fail "it cannot be removed"; }
@@ -127,7 +127,7 @@ box test -e /etc/subsumed/tom.toml || fail "a removal must keep creature files"
 box dpkg --purge subsumed >"$stage/dpkg.log" 2>&1 || { cat "$stage/dpkg.log"; fail "it cannot be purged"; }
 files >"$stage/after"
 diff "$stage/before" "$stage/after" >"$stage/left" || { cat "$stage/left"; fail "a purge leaves something"; }
-box systemctl --no-pager --failed | grep -q subsumed && fail "a purge leaves failed units"
+grep -q subsumed <<<"$(box systemctl --no-pager --failed)" && fail "a purge leaves failed units"
 ok "removed: stopped, creature files kept; purged: no file, folder, socket, shared memory or account left"
 
 # And in one go, while it runs.

@@ -52,8 +52,8 @@ fail() {
 ok() { passed=$((passed + 1)); echo "  $*"; }
 # Waits for what must come; the time is a way out, no criterion.
 until_true() { local what=$1 _; shift; for _ in $(seq 300); do "$@" >/dev/null 2>&1 && return; sleep 0.1; done; fail "never came: $what"; }
-says() { local pattern=$1; shift; log "$@" | grep -q -- "$pattern"; }
-status_says() { show "$1" StatusText | grep -q -- "$2"; }
+says() { local pattern=$1; shift; grep -q -- "$pattern" <<<"$(log "$@")"; }
+status_says() { grep -q -- "$2" <<<"$(show "$1" StatusText)"; }
 is_new() { local pid; pid=$(show "$1" MainPID); [ "$pid" != 0 ] && [ "$pid" != "$2" ]; }
 active() { [ "$(show "$1" ActiveState)" = active ]; }
 # Signal to a unit's main process; never to 0, which would be everybody here.
@@ -64,7 +64,7 @@ hit() {
   box kill "$1" "$pid"
 }
 restarted() { active "$1" && is_new "$1" "$2"; }
-attached() { ctl "$1" status | grep -q "$2 .*attached"; }
+attached() { grep -q "$2 .*attached" <<<"$(ctl "$1" status)"; }
 messages() { ctl "$1" --json wires | tr '{' '\n' | sed -n 's/.*"messages":\([0-9]*\).*"wire":"body.odometry".*/\1/p'; }
 goes_on() { local before; before=$(messages "$1"); sleep 0.3; [ "$(messages "$1")" -gt "$before" ]; }
 
@@ -106,7 +106,7 @@ beats=$(ctl tom --json status | grep -o '"beats":[0-9]*' | head -1 | cut -d: -f2
 until_true "the status of tom" status_says subsumed@tom 'level 0 (avoid); may move'
 if chrt -f 1 true 2>/dev/null; then
   status_says subsumed@tom 'real time' || fail "real time was refused: $(log -u subsumed@tom)"
-  box ps -L -o comm=,cls= -p "$(show subsumed@tom MainPID)" | grep -q '^watchdog *FF' || fail "the watchdog is not under SCHED_FIFO"
+  grep -q '^watchdog *FF' <<<"$(box ps -L -o comm=,cls= -p "$(show subsumed@tom MainPID)")" || fail "the watchdog is not under SCHED_FIFO"
 else
   echo "  skipped: SCHED_FIFO in a unit (this host does not grant it)"
 fi
@@ -228,7 +228,7 @@ if command -v curl >/dev/null; then
   drop_in 2 | box sh -c 'cat >/etc/systemd/system/subsumed@jerry.service.d/page.conf'
   box systemctl daemon-reload
   box systemctl restart subsumed@jerry || fail "jerry does not start with its drop-in for the page"
-  may_look | grep -q '"jerry"' || fail "with its drop-in the page must be reached"
+  grep -q '"jerry"' <<<"$(may_look)" || fail "with its drop-in the page must be reached"
   ok "the page is off, and on where the manual says how; exposure then $(box systemd-analyze security subsumed@jerry | sed -n 's/.*Overall.*service: \([0-9.]*\) .*/\1/p')"
 else
   echo "  skipped: the page (no curl)"

@@ -20,10 +20,10 @@ trap clean EXIT
 fail() { echo "FAILED: $*"; screen; tail -n 5 "$work"/*.log; exit 1; }
 screen() { tmux capture-pane -p -t top; }
 # Waits until the screen shows something, however slow the machine is.
-shows() { for _ in $(seq 150); do screen | grep -q -- "$1" && return; sleep 0.2; done; fail "the screen does not show: $1"; }
-hides() { for _ in $(seq 150); do screen | grep -q -- "$1" || return 0; sleep 0.2; done; fail "the screen still shows: $1"; }
+shows() { for _ in $(seq 150); do grep -q -- "$1" <<<"$(screen)" && return; sleep 0.2; done; fail "the screen does not show: $1"; }
+hides() { for _ in $(seq 150); do grep -q -- "$1" <<<"$(screen)" || return 0; sleep 0.2; done; fail "the screen still shows: $1"; }
 keys() { tmux send-keys -t top "$@"; }
-halted() { "$bin/subsumectl" --creature tops status --json | grep -q '"halted":true'; }
+halted() { grep -q '"halted":true' <<<"$("$bin/subsumectl" --creature tops status --json)"; }
 
 "$bin/subsumed" --name tops --headless --flight-recorder off >"$work/daemon.log" 2>&1 & daemon=$!
 for _ in $(seq 200); do "$bin/subsumectl" --creature tops status >/dev/null 2>&1 && break; sleep 0.1; done

@@ -46,7 +46,7 @@ sleep 1.5
 grep -q 'pause or step' "$work/answer.json" || fail "the refusal must say which there are"
 [ "$(pace fast)" = 200 ] || fail "fast must be taken"
 grows $((paused + 40)) || fail "fast, slots must go by quickly"
-ctl status --json | grep -q '"real_time_allocations":0[,}]' || fail "deliberating must allocate nothing on a real-time thread"
+grep -q '"real_time_allocations":0[,}]' <<<"$(ctl status --json)" || fail "deliberating must allocate nothing on a real-time thread"
 
 if command -v chromium >/dev/null; then
   pace slow >/dev/null

@@ -32,7 +32,7 @@ follow() { # PAGE, in a shell of its own
     local signal=$1 name=$3 hit=1 dir
     for dir in /proc/[0-9]*; do
       [ "$(cat "$dir/comm" 2>/dev/null)" = "$name" ] || continue
-      tr '\0' '\n' <"$dir/environ" 2>/dev/null | grep -qx "SUBSUMED_DOMAIN=$SUBSUMED_DOMAIN" || continue
+      grep -qzx "SUBSUMED_DOMAIN=$SUBSUMED_DOMAIN" "$dir/environ" 2>/dev/null || continue
       kill "$signal" "${dir#/proc/}" && hit=0
     done
     return $hit

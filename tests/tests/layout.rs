@@ -173,3 +173,19 @@ fn layers_know_no_body() {
         }
     }
 }
+
+#[test]
+fn no_script_asks_the_end_of_a_pipe_that_leaves_early() {
+    for (path, text) in files(".sh") {
+        for (number, line) in text.lines().enumerate() {
+            let pipes = line.replace("||", "").replace("| ", "|");
+            // `grep -q` leaves at its first match; who still writes then dies of SIGPIPE, which `pipefail` takes for
+            // the answer of the pipe. `grep -q PATTERN <<<"$(COMMAND)"` has no such race.
+            let asks = pipes
+                .split("|grep -")
+                .skip(1)
+                .any(|options| options.split(' ').next().is_some_and(|o| o.contains('q')));
+            assert!(!asks, "{path}:{}: {line}", number + 1);
+        }
+    }
+}
