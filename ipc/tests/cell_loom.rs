@@ -9,7 +9,7 @@
 
 use ipc::clock::Time;
 use ipc::message::{Kind, WORDS_MAX};
-use ipc::wire::{Page, Reader, Reading, Writer};
+use ipc::wire::{Limits, Page, Reader, Reading, Register, Writer};
 use loom::thread;
 
 /// Most times that loom takes the processor away from a thread at any moment but the thread's own choice.
@@ -105,5 +105,33 @@ fn a_writer_that_is_done_is_heard() {
         writing.join().unwrap();
         let reading = reader.read().unwrap();
         assert_eq!((reading.number, reading.stamp), (2, Time(2)));
+    });
+}
+
+#[test]
+fn a_register_takes_in_whole_messages_each_once() {
+    explore(|| {
+        let (mut writer, reader) = wire(Kind::Number);
+        let limits = Limits {
+            kind: Kind::Number,
+            low: 0.0,
+            high: 9.0,
+        };
+        let mut register = Register::new(limits, Some(reader));
+        let reading = thread::spawn(move || {
+            let mut last = 0;
+            for _ in 0..2 {
+                register.gather(Time(9), |_| {});
+                let seen = register.seen();
+                assert_eq!(register.arrived(), seen > last, "news, and news only, arrives");
+                if let Some((stamp, words)) = register.held() {
+                    assert_eq!((stamp, words[0]), (Time(seen), seen as f64), "torn");
+                }
+                last = seen;
+            }
+        });
+        write(&mut writer, 1);
+        write(&mut writer, 2);
+        reading.join().unwrap();
     });
 }

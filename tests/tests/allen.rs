@@ -109,7 +109,7 @@ fn one_seed_gives_one_run_whatever_the_order_of_modules() {
                 order.reverse();
                 order.rotate_left(shift % station.running.len());
             }
-            station.running.set_order(order);
+            station.running.set_order(&order);
         }
         trial.pass_hashing(MINUTES_S);
         trial.hash()

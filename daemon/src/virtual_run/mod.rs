@@ -320,7 +320,9 @@ impl VirtualRun {
         let guests = self.guests.here.iter_mut().filter(|g| g.due == Some(t));
         for station in own.chain(guests.map(|g| &mut g.station)) {
             if let Some(random) = &mut self.shuffle {
-                station.running.set_order(shuffled(station.running.len(), random));
+                station
+                    .running
+                    .set_order(&shuffled(station.running.len(), random));
             }
             station.running.step(t);
         }

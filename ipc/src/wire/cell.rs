@@ -46,10 +46,20 @@ pub struct Reading {
     pub words: Words,
 }
 
+/// The first `N` words of a message as taken from a cell.
+pub(super) struct Taken<const N: usize> {
+    /// How many messages were written to the wire so far, this one included.
+    pub(super) number: u64,
+    /// When it was written.
+    pub(super) stamp: Time,
+    /// Its words.
+    pub(super) words: [f64; N],
+}
+
 /// What one try to read a cell came to.
-enum Attempt {
-    /// A whole message: its number and its stamp.
-    Whole(u64, Time),
+enum Attempt<const N: usize> {
+    /// A whole message.
+    Whole(Taken<N>),
     /// Nothing was ever written.
     Empty,
     /// A writer was at it.
@@ -120,24 +130,43 @@ impl Cell {
         self.sequence.load(Ordering::Relaxed) != seen.wrapping_mul(2)
     }
 
-    /// Takes the newest message's first `N` words into `words`, which stay as they were if there never was one
-    /// or if none could be read whole in [`TRIES_MAX`] tries; else its number and its stamp.
+    /// The newest message's first `N` words; `None` if there never was one or if none could be read whole in
+    /// [`TRIES_MAX`] tries.
     #[inline(always)]
-    pub(super) fn take<const N: usize>(&self, words: &mut [f64]) -> Option<(u64, Time)> {
-        match self.attempt::<N>(words) {
-            Attempt::Whole(number, stamp) => Some((number, stamp)),
+    pub(super) fn take<const N: usize>(&self) -> Option<Taken<N>> {
+        // Pairs with the release store that ends `put`.
+        let before = self.sequence.load(Ordering::Acquire);
+        match self.attempt(before) {
+            Attempt::Whole(taken) => Some(taken),
             Attempt::Empty => None,
-            Attempt::Disturbed => self.retry::<N>(words),
+            Attempt::Disturbed => self.retry(),
+        }
+    }
+
+    /// As [`Cell::take`], and `None` if it is number `seen`; that, the common answer, costs one load.
+    #[inline(always)]
+    pub(super) fn take_newer<const N: usize>(&self, seen: u64) -> Option<Taken<N>> {
+        // Pairs with the release store that ends `put`.
+        let before = self.sequence.load(Ordering::Acquire);
+        if before == seen.wrapping_mul(2) {
+            return None;
+        }
+        // A sequence that went back to zero, which no writer of ours does, is a message like any other.
+        match self.attempt_at(before) {
+            Attempt::Whole(taken) => Some(taken),
+            Attempt::Empty => None,
+            Attempt::Disturbed => self.retry().filter(|taken| taken.number != seen),
         }
     }
 
     /// The further tries of [`Cell::take`]: rare, so kept out of the way.
     #[cold]
-    fn retry<const N: usize>(&self, words: &mut [f64]) -> Option<(u64, Time)> {
+    fn retry<const N: usize>(&self) -> Option<Taken<N>> {
         for _ in 1..TRIES_MAX {
             super::sync::pause();
-            match self.attempt::<N>(words) {
-                Attempt::Whole(number, stamp) => return Some((number, stamp)),
+            // Pairs with the release store that ends `put`.
+            match self.attempt(self.sequence.load(Ordering::Acquire)) {
+                Attempt::Whole(taken) => return Some(taken),
                 Attempt::Empty => return None,
                 Attempt::Disturbed => {}
             }
@@ -145,43 +174,40 @@ impl Cell {
         None
     }
 
+    /// One try, after the sequence was found to be `before`.
     #[inline(always)]
-    fn attempt<const N: usize>(&self, words: &mut [f64]) -> Attempt {
-        // Pairs with the release store that ends `put`.
-        let before = self.sequence.load(Ordering::Acquire);
+    fn attempt<const N: usize>(&self, before: u64) -> Attempt<N> {
         if before == 0 {
             return Attempt::Empty;
         }
+        self.attempt_at(before)
+    }
+
+    /// As [`Cell::attempt`], where something was written.
+    #[inline(always)]
+    fn attempt_at<const N: usize>(&self, before: u64) -> Attempt<N> {
         if before & 1 == 1 {
             return Attempt::Disturbed;
         }
         let stamp = Time(self.stamp.load(Ordering::Relaxed));
-        let whole: [f64; N] = std::array::from_fn(|k| f64::from_bits(self.words[k].load(Ordering::Relaxed)));
+        let words = std::array::from_fn(|k| f64::from_bits(self.words[k].load(Ordering::Relaxed)));
         // Pairs with the release fence of `put`.
         fence(Ordering::Acquire);
         if self.sequence.load(Ordering::Relaxed) != before {
             return Attempt::Disturbed;
         }
-        words[..N].copy_from_slice(&whole);
-        Attempt::Whole(before / 2, stamp)
+        let number = before / 2;
+        Attempt::Whole(Taken { number, stamp, words })
     }
 
-    /// As [`Cell::take`], for a message of `kind`.
-    #[inline(always)]
+    /// As [`Cell::take`], for a message of `kind`, whose words come into `words`; else those stay as they were.
     pub(crate) fn take_words(&self, kind: Kind, words: &mut [f64]) -> Option<(u64, Time)> {
-        match kind.single() {
-            true => self.take::<1>(words),
-            false => self.take_others(kind.words(), words),
-        }
-    }
-
-    /// Messages that are not one word long.
-    fn take_others(&self, length: usize, words: &mut [f64]) -> Option<(u64, Time)> {
-        match length {
-            0 => self.take::<0>(words),
-            2 => self.take::<2>(words),
-            3 => self.take::<3>(words),
-            _ => self.take::<WORDS_MAX>(words),
+        match kind.words() {
+            0 => put_into::<0>(self.take(), words),
+            1 => put_into::<1>(self.take(), words),
+            2 => put_into::<2>(self.take(), words),
+            3 => put_into::<3>(self.take(), words),
+            _ => put_into::<WORDS_MAX>(self.take(), words),
         }
     }
 
@@ -192,4 +218,12 @@ impl Cell {
         let (number, stamp) = self.take_words(kind, &mut words)?;
         Some(Reading { number, stamp, words })
     }
+}
+
+/// Puts the words of what was taken where they belong: its number and its stamp.
+#[inline(always)]
+fn put_into<const N: usize>(taken: Option<Taken<N>>, words: &mut [f64]) -> Option<(u64, Time)> {
+    let taken = taken?;
+    words[..N].copy_from_slice(&taken.words);
+    Some((taken.number, taken.stamp))
 }

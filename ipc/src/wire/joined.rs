@@ -187,22 +187,28 @@ impl Joined {
         }
     }
 
-    /// Takes in the tap's newest message if there is one that was not seen.
+    /// Whether the tap may have a message that was not seen. Forgets what the look before took in.
     #[inline]
-    pub(super) fn look(&mut self, now: Time, limits: Option<&Limits>) {
+    pub(super) fn has_news(&mut self) -> bool {
         self.fresh = false;
         self.fate = None;
-        if !self.leaving && self.end.reader.changed(self.seen) {
-            self.take_in(now, limits);
-        }
+        !self.leaving && self.end.reader.changed(self.seen)
     }
 
-    /// Takes in the tap's newest message, of which there is one that was not seen.
-    fn take_in(&mut self, now: Time, limits: Option<&Limits>) {
-        let mut words = [0.0; WORDS_MAX];
-        let Some((number, stamp)) = self.end.reader.take_newer(self.seen, &mut words) else {
-            return;
+    /// Takes in the tap's newest message, of up to `N` words, if it is one that was not seen: then it is `fresh`.
+    #[inline(never)]
+    pub(super) fn take_in<const N: usize>(&mut self, now: Time, limits: Option<&Limits>) {
+        let reader = &self.end.reader;
+        let mut words = [0.0; N];
+        let taken = if N == 1 {
+            reader.take_word_newer(self.seen).map(|(number, stamp, word)| {
+                words[0] = word;
+                (number, stamp)
+            })
+        } else {
+            reader.take_newer(self.seen, &mut words)
         };
+        let Some((number, stamp)) = taken else { return };
         self.seen = number;
         let newest = self.window.map_or(Time::ZERO, |w| w.stamp);
         let stamp = match plausible(stamp, now) {
@@ -217,7 +223,7 @@ impl Joined {
             stamp,
             time_constant: self.end.time_constant,
         });
-        self.words = words;
+        self.words[..N].copy_from_slice(&words);
         self.fresh = true;
         self.fate = Some(Fate::Rejected);
     }

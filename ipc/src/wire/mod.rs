@@ -13,6 +13,7 @@ pub mod outlet;
 pub mod page;
 pub mod register;
 mod room;
+mod series;
 mod sync;
 
 pub use cell::{LAYOUT, Reading};

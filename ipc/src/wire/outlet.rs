@@ -106,10 +106,8 @@ impl Outlet {
     /// Writes the staged message, stamped `u`, unless an inhibitor's window holds. Says whether it wrote.
     #[inline]
     pub fn commit(&mut self, u: Time, gone: impl FnMut(TapEnd)) -> bool {
-        if !self.taps.is_empty() {
-            self.look(u, gone);
-        }
-        if !std::mem::take(&mut self.staged) || !self.open(u) {
+        let staged = std::mem::take(&mut self.staged);
+        if !self.taps.is_empty() && !self.admits(u, staged, gone) || !staged {
             return false;
         }
         match &self.words {
@@ -118,6 +116,14 @@ impl Outlet {
         }
         self.counts.emitted += 1;
         true
+    }
+
+    /// Takes in what the inhibitors say, and whether they let a message pass at `u`; counts the one, if it is
+    /// `staged`, that they don't. Most outlets have none, so it is kept out of the way.
+    #[inline(never)]
+    fn admits(&mut self, u: Time, staged: bool, gone: impl FnMut(TapEnd)) -> bool {
+        self.look(u, gone);
+        staged && self.open(u)
     }
 
     /// Writes a message at once, stamped `u`, as though the module had emitted it then, unless an inhibitor's
@@ -132,14 +138,12 @@ impl Outlet {
         true
     }
 
-    /// Takes in what the inhibitors say. Most outlets have none, so it is kept out of the way.
-    #[inline(never)]
+    /// Takes in what the inhibitors say.
     pub fn look(&mut self, now: Time, gone: impl FnMut(TapEnd)) {
-        if self.taps.is_empty() {
-            return;
-        }
         for tap in &mut self.taps {
-            tap.look(now, None);
+            if tap.has_news() {
+                tap.take_in::<WORDS_MAX>(now, None);
+            }
             if tap.fresh {
                 tap.take_effect();
             }
@@ -148,7 +152,6 @@ impl Outlet {
     }
 
     /// Whether a message may be written at `u`; counts the one that may not.
-    #[inline]
     fn open(&mut self, u: Time) -> bool {
         if self.taps.is_empty() || tap::emits(u, self.taps.iter().filter_map(|t| t.window)) {
             return true;

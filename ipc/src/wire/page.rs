@@ -7,8 +7,8 @@
 use std::any::Any;
 use std::fmt;
 use std::ptr::NonNull;
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, LazyLock};
 
 use super::cell::{Cell, Reading};
 use crate::clock::Time;
@@ -127,8 +127,9 @@ pub struct Writer {
     _page: Arc<Page>,
 }
 
-/// A reading end of a wire; there may be any number.
+/// A reading end of a wire; there may be any number. The cell comes first: what a beat asks for of an end.
 #[derive(Clone, Debug)]
+#[repr(C)]
 pub struct Reader {
     cell: NonNull<Cell>,
     kind: Kind,
@@ -175,7 +176,15 @@ impl Writer {
     }
 }
 
+/// The page of the wire that nobody ever writes.
+static SILENT: LazyLock<Arc<Page>> = LazyLock::new(|| Page::in_memory(1));
+
 impl Reader {
+    /// The reading end of a wire that nobody ever writes, for a port that is not connected.
+    pub(super) fn silent(kind: Kind) -> Reader {
+        SILENT.reader(0, kind).expect("the page has one wire")
+    }
+
     /// The newest message, if there ever was one and it could be read whole within the bounded tries.
     pub fn read(&self) -> Option<Reading> {
         // SAFETY: `_page` keeps the cell mapped.
@@ -196,19 +205,24 @@ impl Reader {
         unsafe { self.cell.as_ref() }.changed(seen)
     }
 
-    /// Takes the newest message's words into `words` if it is not number `seen`; else, and where none could be
-    /// read whole, they stay as they were. Its number and stamp. The common answer, none, costs one load.
+    /// The newest message, on a wire of a [kind of one word](Kind::single), if it is not number `seen`; `None` also
+    /// where none could be read whole. The common answer, none, costs one load.
     #[inline(always)]
-    pub(super) fn take_newer<const N: usize>(&self, seen: u64, words: &mut [f64; N]) -> Option<(u64, Time)> {
+    pub(super) fn take_word_newer(&self, seen: u64) -> Option<(u64, Time, f64)> {
         // SAFETY: `_page` keeps the cell mapped.
-        let cell = unsafe { self.cell.as_ref() };
-        if !cell.changed(seen) {
+        let taken = unsafe { self.cell.as_ref() }.take_newer::<1>(seen)?;
+        Some((taken.number, taken.stamp, taken.words[0]))
+    }
+
+    /// Takes the newest message's words into `words` if it is not number `seen`; else, and where none could be
+    /// read whole, they stay as they were. Its number and stamp.
+    #[inline]
+    pub(super) fn take_newer(&self, seen: u64, words: &mut [f64]) -> Option<(u64, Time)> {
+        if !self.changed(seen) {
             return None;
         }
-        let taken = match N {
-            1 => cell.take::<1>(words),
-            _ => cell.take_words(self.kind, words),
-        };
+        // SAFETY: `_page` keeps the cell mapped.
+        let taken = unsafe { self.cell.as_ref() }.take_words(self.kind, words);
         taken.filter(|(number, _)| *number != seen)
     }
 

@@ -7,16 +7,17 @@
 //!   existing wire ──► (S level 1) ──► (S level 1, declared later) ──► (S level 2) ──► register ──► module
 //! ```
 
+use std::mem::offset_of;
 use std::sync::Arc;
 
 use super::joined::{
-    Fate, Joined, Plug, TapEnd, TapGauge, TapLook, TapState, join, plausible, release, sweep, window_of,
+    Fate, Joined, Plug, TapEnd, TapGauge, TapLook, TapState, join, plausible, release, window_of,
 };
 use super::limits::Limits;
 use super::page::Reader;
 use crate::clock::Time;
 use crate::message::{Kind, Payload, WORDS_MAX, Words};
-use crate::tap::{self, Window};
+use crate::tap::Window;
 
 /// What was counted at one input.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -31,36 +32,53 @@ pub struct InputCounts {
 
 /// The register behind one input port.
 ///
-/// It is two lines of the processor's cache: with a thousand modules a beat waits for memory, not for arithmetic.
-/// Only messages of several words, which are rare, lie elsewhere.
+/// With a thousand modules a beat waits for memory, not for arithmetic: so all that a port without taps needs of its
+/// register at a message of one word is one line of the processor's cache, up to the wire's cell in `wire`. Only
+/// messages of several words, which are rare, lie elsewhere.
 #[derive(Debug)]
 #[repr(C, align(64))]
 pub struct Register {
-    wire: Option<Reader>,
-    seen: u64,
     low: f64,
     high: f64,
+    /// The stamp of the message held; zero while there is none.
+    pub(super) stamp: Time,
+    /// The message held, if it is of a kind of one word.
+    word: f64,
+    seen: u64,
+    delivered: u64,
     kind: Kind,
+    /// Whether messages are of one word.
+    single: bool,
+    /// Whether a suppressor stands before it.
+    pub(super) tapped: bool,
     /// Whether a message is held.
-    holds: bool,
+    pub(super) holds: bool,
     /// Whether a message was delivered since the last gather.
     pending: bool,
     arrived: bool,
-    /// What became of the existing wire's message at the last look, if there was one: number `seen`.
-    looked: Option<Fate>,
-    /// Whether that message is the one after the last that was looked at.
-    next: bool,
-    /// The stamp of the message held.
-    stamp: Time,
-    /// The message held, if it is of a kind of one word.
-    word: f64,
+    /// What the last look took in of the existing wire: message number `seen`.
+    pub(super) looked: Looked,
+    wire: Reader,
+    pub(super) taps: Vec<Joined>,
     /// The message held, if it is of another kind.
     words: Option<Box<Words>>,
-    taps: Vec<Joined>,
-    counts: InputCounts,
+    pub(super) rejected: u64,
+    faults: u64,
 }
 
-const _: () = assert!(size_of::<Register>() == 128);
+const _: () = assert!(size_of::<Register>() == 128 && offset_of!(Register, wire) == 56);
+
+/// What a look took in of the existing wire.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Looked {
+    /// One that was delivered, not the one after the last that was taken in.
+    Delivered,
+    /// The message after the last that was taken in, which was delivered.
+    Next,
+    Nothing,
+    Rejected,
+    Fault,
+}
 
 /// What a register took in of its wire at its last look, in a word.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -73,51 +91,54 @@ pub enum Took {
     Other,
 }
 
-/// A message that may be let in: the existing wire's, or that of the k-th tap.
-#[derive(Clone, Copy)]
-enum From {
-    Wire,
-    Tap(usize),
-}
-
 impl Register {
     /// A register for messages within `limits`, fed by `wire` if the port is connected.
     pub fn new(limits: Limits, wire: Option<Reader>) -> Register {
+        let single = limits.kind.single();
+        let (low, high) = match limits.kind {
+            Kind::Bit => (0.0, 1.0),
+            _ => (limits.low.max(f64::MIN), limits.high.min(f64::MAX)),
+        };
         Register {
-            low: limits.low.max(f64::MIN),
-            high: limits.high.min(f64::MAX),
-            kind: limits.kind,
-            wire,
+            low,
+            high,
+            stamp: Time::ZERO,
+            word: 0.0,
             seen: 0,
-            taps: Vec::new(),
+            delivered: 0,
+            kind: limits.kind,
+            single,
+            tapped: false,
             holds: false,
             pending: false,
             arrived: false,
-            looked: None,
-            next: false,
-            counts: InputCounts::default(),
-            stamp: Time::ZERO,
-            word: 0.0,
-            words: (!limits.kind.single()).then(|| Box::new([0.0; WORDS_MAX])),
+            looked: Looked::Nothing,
+            wire: wire.unwrap_or_else(|| Reader::silent(limits.kind)),
+            taps: Vec::new(),
+            words: (!single).then(|| Box::new([0.0; WORDS_MAX])),
+            rejected: 0,
+            faults: 0,
         }
     }
 
     /// Connects the port to another wire from now on, and hands back the one before: whoever wrote that is gone,
     /// and has come back with new ones. The message held stays until a newer one is delivered. A wire that carries
     /// something else is handed back itself.
-    pub fn connect(&mut self, wire: Reader) -> Option<Reader> {
+    pub fn connect(&mut self, wire: Reader) -> Reader {
         if wire.kind() != self.kind {
-            return Some(wire);
+            return wire;
         }
         self.seen = 0;
-        self.wire.replace(wire)
+        std::mem::replace(&mut self.wire, wire)
     }
 
     /// Joins a suppressor: after those of lower or equal level, before those of higher level. Does not
     /// allocate if the tap brings [`Room::full`](super::Room::full). `Err` gives the tap back when
     /// [`TAPS_MAX`](super::TAPS_MAX) stand there already.
     pub fn suppress(&mut self, end: TapEnd) -> Result<(), TapEnd> {
-        join(&mut self.taps, end)
+        join(&mut self.taps, end)?;
+        self.tapped = true;
+        Ok(())
     }
 
     /// Tells the suppressors of `plug` to go. Their windows still run out as they would have.
@@ -138,165 +159,91 @@ impl Register {
     /// overwrite each other. On the virtual clock it lets every message meet the rules, not only the newest.
     #[inline]
     pub fn look(&mut self, now: Time, gone: impl FnMut(TapEnd)) {
-        // Most messages are one word: those never touch the other eleven.
-        if self.kind.single() {
-            self.look_at::<1>(now, gone);
-        } else {
-            self.look_at_many(now, gone);
+        // Most messages are one word, and most taps say nothing: those never touch the other eleven words.
+        if !self.single {
+            return self.look_at_words(now, gone);
+        }
+        let original = self.original_word(now);
+        if self.tapped && !self.quiet(original.map(|(stamp, _)| stamp)) {
+            let original = original.map(|(stamp, word)| (stamp, [word]));
+            self.look_at_taps(original, now, gone);
+        } else if let Some((stamp, word)) = original {
+            self.deliver(stamp, &[word]);
         }
     }
 
-    /// [`Register::look`] for messages of several words: rare, so kept out of the way.
+    /// [`Register::look`] for messages of several words: rare.
     #[inline(never)]
-    fn look_at_many(&mut self, now: Time, gone: impl FnMut(TapEnd)) {
-        self.look_at::<WORDS_MAX>(now, gone);
+    fn look_at_words(&mut self, now: Time, gone: impl FnMut(TapEnd)) {
+        let original = self.original_words(now);
+        if self.tapped {
+            self.look_at_taps(original, now, gone);
+        } else if let Some((stamp, words)) = original {
+            self.deliver(stamp, &words);
+        }
     }
 
-    /// [`Register::look`] for messages of up to `N` words.
+    /// The existing wire's newest message, of one word, if it was not seen before and is one.
     #[inline(always)]
-    fn look_at<const N: usize>(&mut self, now: Time, gone: impl FnMut(TapEnd)) {
-        let mut incoming = [0.0; N];
-        let original = self.newest_original(now, &mut incoming);
-        if self.taps.is_empty() {
-            if let Some(stamp) = original {
-                self.deliver(stamp, &incoming);
-            }
-            return;
+    fn original_word(&mut self, now: Time) -> Option<(Time, f64)> {
+        let Some((number, stamp, word)) = self.wire.take_word_newer(self.seen) else {
+            self.looked = Looked::Nothing;
+            return None;
+        };
+        let within = self.low <= word && word <= self.high && (self.kind == Kind::Number || is_bit(word));
+        if within && let Some(stamp) = plausible(stamp, now) {
+            self.accept(number);
+            return Some((stamp, word));
         }
-        let mut fresh = false;
-        let limits = self.limits();
-        for tap in &mut self.taps {
-            tap.look(now, Some(&limits));
-            fresh |= tap.fresh;
-        }
-        if fresh {
-            self.series(original, &incoming);
-        } else if let Some(stamp) = original {
-            // No tap spoke: what it decides hangs on the windows alone.
-            if self.passes_from(0, stamp) {
-                self.deliver(stamp, &incoming);
-            } else {
-                self.counts.rejected += 1;
-                self.looked = Some(Fate::Rejected);
-            }
-        }
-        sweep(&mut self.taps, now, gone);
+        self.refuse(number);
+        None
     }
 
-    /// Lets in the newest message of the series, in a beat in which at least one tap spoke. `original` is the
-    /// stamp of the existing wire's message, if one came, and `incoming` its words.
-    fn series<const N: usize>(&mut self, original: Option<Time>, incoming: &[f64; N]) {
-        let in_hindsight = self.rejected_in_hindsight();
-        if in_hindsight {
-            self.holds = false;
+    /// The existing wire's newest message, of several words, if it was not seen before and is one.
+    fn original_words(&mut self, now: Time) -> Option<(Time, Words)> {
+        let mut words = [0.0; WORDS_MAX];
+        let Some((number, stamp)) = self.wire.take_newer(self.seen, &mut words) else {
+            self.looked = Looked::Nothing;
+            return None;
+        };
+        if self.limits().accept(&words)
+            && let Some(stamp) = plausible(stamp, now)
+        {
+            self.accept(number);
+            return Some((stamp, words));
         }
-        let mut newest = None;
-        if let Some(stamp) = original {
-            if self.passes_from(0, stamp) {
-                newest = Some((stamp, From::Wire));
-            } else {
-                self.counts.rejected += 1;
-                self.looked = Some(Fate::Rejected);
-            }
-        }
-        for k in 0..self.taps.len() {
-            let (fresh, Some(window)) = (self.taps[k].fresh, self.taps[k].window) else {
-                continue;
-            };
-            let passes = if fresh {
-                self.passes_from(k + 1, window.stamp)
-            } else {
-                // Looked at before, and counted then.
-                let above = &self.taps[k + 1..];
-                in_hindsight && tap::passes(window.stamp, above.iter().filter_map(|t| t.window))
-            };
-            if passes {
-                if fresh {
-                    self.taps[k].take_effect();
-                }
-                if newest.is_none_or(|(stamp, _)| window.stamp >= stamp) {
-                    newest = Some((window.stamp, From::Tap(k)));
-                }
-            }
-        }
-        match newest {
-            Some((stamp, From::Wire)) => self.deliver(stamp, incoming),
-            Some((stamp, From::Tap(k))) => {
-                let mut words = [0.0; N];
-                words.copy_from_slice(&self.taps[k].words[..N]);
-                self.deliver(stamp, &words);
-            }
-            None => {}
-        }
+        self.refuse(number);
+        None
     }
 
-    /// Whether a tap's message that came in just now was written before the message held, and its window
-    /// rejects that: another process may stamp a message and be held up before it writes it. The register
-    /// must not keep a message that its suppressor overrules for as long as the window is open; what it
-    /// holds instead is the newest message of the taps.
-    fn rejected_in_hindsight(&self) -> bool {
-        if !self.holds {
-            return false;
-        }
-        let held = self.stamp;
-        // A message of a tap that stands further along is not the lower tap's to reject.
-        let from = self
-            .taps
-            .iter()
-            .rposition(|t| t.window.is_some_and(|w| w.stamp == held) && !t.fresh)
-            .map_or(0, |k| k + 1);
-        let above = &self.taps[from..];
-        above
-            .iter()
-            .any(|t| t.fresh && t.window.is_some_and(|w| w.holds(held)))
-    }
-
-    /// The stamp of the existing wire's newest message, if it was not seen before and is one; its words are
-    /// then those `incoming`.
+    /// Notes that message `number` of the existing wire was looked at, and is one.
     #[inline(always)]
-    fn newest_original<const N: usize>(&mut self, now: Time, incoming: &mut [f64; N]) -> Option<Time> {
-        self.looked = None;
-        let (number, stamp) = self.wire.as_ref()?.take_newer(self.seen, incoming)?;
-        self.next = number.wrapping_sub(self.seen) == 1;
+    fn accept(&mut self, number: u64) {
+        let next = number.wrapping_sub(self.seen) == 1;
+        self.looked = if next { Looked::Next } else { Looked::Delivered };
         self.seen = number;
-        match plausible(stamp, now) {
-            Some(stamp) if self.limits().accept(incoming) => {
-                self.looked = Some(Fate::Delivered);
-                Some(stamp)
-            }
-            _ => {
-                self.looked = Some(Fate::Fault);
-                self.counts.faults += 1;
-                None
-            }
-        }
     }
 
-    /// Whether a message stamped `u` gets through the suppressors from the `first` on; counts it with the
-    /// one that rejects it.
-    #[inline]
-    fn passes_from(&mut self, first: usize, u: Time) -> bool {
-        let above = &mut self.taps[first..];
-        if tap::passes(u, above.iter().filter_map(|t| t.window)) {
-            return true;
-        }
-        if let Some(tap) = above.iter_mut().rfind(|t| t.window.is_some_and(|w| w.holds(u))) {
-            tap.reject();
-        }
-        false
+    /// Notes that message `number` of the existing wire was looked at, and is none.
+    #[cold]
+    fn refuse(&mut self, number: u64) {
+        self.looked = Looked::Fault;
+        self.seen = number;
+        self.faults += 1;
     }
 
     #[inline]
-    fn deliver<const N: usize>(&mut self, stamp: Time, words: &[f64; N]) {
-        self.counts.delivered += 1;
+    pub(super) fn deliver<const N: usize>(&mut self, stamp: Time, words: &[f64; N]) {
+        self.delivered += 1;
         // Writes of other threads may be seen out of order: what is older than the message held was
         // overwritten by it.
-        if self.holds && stamp < self.stamp {
+        if stamp < self.stamp {
             return;
         }
-        match &mut self.words {
-            None => self.word = words[0],
-            Some(all) => all[..N].copy_from_slice(words),
+        if N == 1 {
+            self.word = words[0];
+        } else if let Some(all) = &mut self.words {
+            all[..N].copy_from_slice(words);
         }
         self.stamp = stamp;
         self.holds = true;
@@ -313,18 +260,17 @@ impl Register {
         self.holds.then(|| (self.stamp, words()))
     }
 
-    /// What the message held says; `None` until the first was delivered, and from a register whose messages have another
+    /// What the message held said; `None` until the first was delivered, and from a register whose messages have another
     /// number of words.
     #[inline]
     pub fn value<T: Payload>(&self) -> Option<T> {
-        if !self.holds {
+        if !self.holds || self.single != T::KIND.single() {
             return None;
         }
-        match &self.words {
-            None if T::KIND.single() => Some(T::of_word(self.word)),
-            Some(words) if !T::KIND.single() => Some(T::unpack(words)),
-            _ => None,
+        if T::KIND.single() {
+            return Some(T::of_word(self.word));
         }
+        self.words.as_deref().map(T::unpack)
     }
 
     /// When the message held was written; `None` until the first was delivered.
@@ -334,7 +280,7 @@ impl Register {
     }
 
     #[inline(always)]
-    fn limits(&self) -> Limits {
+    pub(super) fn limits(&self) -> Limits {
         Limits {
             kind: self.kind,
             low: self.low,
@@ -351,15 +297,15 @@ impl Register {
     /// Whether a suppressor stands before it.
     #[inline]
     pub fn tapped(&self) -> bool {
-        !self.taps.is_empty()
+        self.tapped
     }
 
     /// What the last [`Register::gather`] took in of the existing wire, in a word, for those who trace.
     #[inline]
     pub fn took(&self) -> Took {
         match self.looked {
-            None => Took::Nothing,
-            Some(Fate::Delivered) if self.next => Took::Next,
+            Looked::Nothing => Took::Nothing,
+            Looked::Next => Took::Next,
             _ => Took::Other,
         }
     }
@@ -367,7 +313,13 @@ impl Register {
     /// The message of the existing wire that the last [`Register::gather`] took in, by its number, and what
     /// became of it; for those who trace.
     pub fn looked(&self) -> Option<(u64, Fate)> {
-        self.looked.map(|fate| (self.seen, fate))
+        let fate = match self.looked {
+            Looked::Nothing => return None,
+            Looked::Next | Looked::Delivered => Fate::Delivered,
+            Looked::Rejected => Fate::Rejected,
+            Looked::Fault => Fate::Fault,
+        };
+        Some((self.seen, fate))
     }
 
     /// The number of the last message of the existing wire that was looked at, 0 if there was none.
@@ -382,14 +334,24 @@ impl Register {
 
     /// Forgets the message held: what a reset line does.
     pub fn clear(&mut self) {
-        self.holds = false;
+        self.forget();
         self.pending = false;
         self.arrived = false;
     }
 
+    /// Holds no message any more.
+    pub(super) fn forget(&mut self) {
+        self.holds = false;
+        self.stamp = Time::ZERO;
+    }
+
     /// What was counted so far.
     pub fn counts(&self) -> InputCounts {
-        self.counts
+        InputCounts {
+            delivered: self.delivered,
+            rejected: self.rejected,
+            faults: self.faults,
+        }
     }
 
     /// The taps as they stand in series, for those who watch.
@@ -401,4 +363,10 @@ impl Register {
     pub fn window_of(&self, gauge: &Arc<TapGauge>) -> Option<Window> {
         window_of(&self.taps, gauge)
     }
+}
+
+/// Whether a number is one that stands for a bit.
+#[inline(never)]
+fn is_bit(word: f64) -> bool {
+    word == 0.0 || word == 1.0
 }

@@ -7,7 +7,7 @@ use ipc::message::Kind;
 use ipc::wire::{Outlet, Page, Register};
 
 use crate::model::{self, Input};
-use crate::rig::{ANY, choices, end, histories, said, suppressors, words, wrote};
+use crate::rig::{KINDS, any, choices, end, histories, said, suppressors, words, wrote};
 
 /// An output that an inhibitor stands on, and the input it feeds, which a suppressor stands before.
 /// Sources: 0 the module, 1 the inhibitor, 2 the suppressor.
@@ -23,13 +23,19 @@ fn an_inhibitor_and_a_suppressor_on_one_wire_every_history() {
 }
 
 pub(crate) fn inhibit_and_suppress(history: &[u32], inhibit: u64, suppress: u64, stride: u64) {
+    for kind in KINDS {
+        inhibit_and_suppress_kind(history, inhibit, suppress, stride, kind);
+    }
+}
+
+fn inhibit_and_suppress_kind(history: &[u32], inhibit: u64, suppress: u64, stride: u64, kind: Kind) {
     let page = Page::in_memory(3);
-    let mut register = Register::new(ANY, page.reader(0, Kind::Vector));
-    register.suppress(end(&page, 2, suppress, 1, 0)).unwrap();
-    let mut outlet = Outlet::new(page.writer(0, Kind::Vector).unwrap());
-    outlet.inhibit(end(&page, 1, inhibit, 1, 0)).unwrap();
-    let mut inhibitor = page.writer(1, Kind::Vector).unwrap();
-    let mut suppressor = page.writer(2, Kind::Vector).unwrap();
+    let mut register = Register::new(any(kind), page.reader(0, kind));
+    register.suppress(end(&page, kind, 2, suppress, 1, 0)).unwrap();
+    let mut outlet = Outlet::new(page.writer(0, kind).unwrap());
+    outlet.inhibit(end(&page, kind, 1, inhibit, 1, 0)).unwrap();
+    let mut inhibitor = page.writer(1, kind).unwrap();
+    let mut suppressor = page.writer(2, kind).unwrap();
     let mut input = Input::new(&suppressors(&[1], &[suppress]));
     let (mut inhibiting, mut emitted, mut dropped) = (Vec::new(), 0, 0);
     for (now, &row) in history.iter().enumerate() {
@@ -48,12 +54,12 @@ pub(crate) fn inhibit_and_suppress(history: &[u32], inhibit: u64, suppress: u64,
             emitted += u64::from(open);
             dropped += u64::from(!open);
         }
-        let why = format!("{history:?} inhibit {inhibit} suppress {suppress} tick {now}");
+        let why = format!("{history:?} inhibit {inhibit} suppress {suppress} {kind} tick {now}");
         assert_eq!(outlet.commit(Time(now), |_| panic!("{why}")), emits, "{why}");
         input.tick(now, |s| if s == 0 { emits } else { wrote(row, 2) });
         if now % stride == stride - 1 {
             register.gather(Time(now), |_| panic!("{why}"));
-            assert_eq!(said(register.held()), input.held(), "{why}");
+            assert_eq!(said(register.held(), kind), input.held(), "{why}");
         }
     }
     let counts = outlet.counts();
@@ -76,27 +82,33 @@ fn a_tap_on_a_tap_every_history() {
 }
 
 pub(crate) fn tap_on_tap(history: &[u32], suppress: u64, inhibit: u64, suppress_tap: u64) {
+    for kind in KINDS {
+        tap_on_tap_of_kind(history, suppress, inhibit, suppress_tap, kind);
+    }
+}
+
+fn tap_on_tap_of_kind(history: &[u32], suppress: u64, inhibit: u64, suppress_tap: u64, kind: Kind) {
     const EXISTING: usize = 0;
     const MODULE: usize = 1;
     const TAP: usize = 4; // what a relay makes of the module's wire
     let page = Page::in_memory(5);
-    let mut existing = page.writer(EXISTING, Kind::Vector).unwrap();
-    let mut outlet = Outlet::new(page.writer(MODULE, Kind::Vector).unwrap());
-    let mut inhibitor = page.writer(2, Kind::Vector).unwrap();
-    let mut over_tap = page.writer(3, Kind::Vector).unwrap();
-    let mut relayed = Outlet::new(page.writer(TAP, Kind::Vector).unwrap());
-    outlet.inhibit(end(&page, 2, inhibit, 2, 0)).unwrap();
-    let mut relay = Register::new(ANY, page.reader(MODULE, Kind::Vector));
-    relay.suppress(end(&page, 3, suppress_tap, 2, 0)).unwrap();
-    let mut register = Register::new(ANY, page.reader(EXISTING, Kind::Vector));
-    register.suppress(end(&page, TAP, suppress, 1, 0)).unwrap();
+    let mut existing = page.writer(EXISTING, kind).unwrap();
+    let mut outlet = Outlet::new(page.writer(MODULE, kind).unwrap());
+    let mut inhibitor = page.writer(2, kind).unwrap();
+    let mut over_tap = page.writer(3, kind).unwrap();
+    let mut relayed = Outlet::new(page.writer(TAP, kind).unwrap());
+    outlet.inhibit(end(&page, kind, 2, inhibit, 2, 0)).unwrap();
+    let mut relay = Register::new(any(kind), page.reader(MODULE, kind));
+    relay.suppress(end(&page, kind, 3, suppress_tap, 2, 0)).unwrap();
+    let mut register = Register::new(any(kind), page.reader(EXISTING, kind));
+    register.suppress(end(&page, kind, TAP, suppress, 1, 0)).unwrap();
 
     let mut inhibiting = Vec::new();
     let mut line = Input::new(&suppressors(&[2], &[suppress_tap]));
     let mut input = Input::new(&suppressors(&[1], &[suppress]));
     for (now, &row) in history.iter().enumerate() {
         let now = now as u64;
-        let why = format!("{history:?} {suppress} {inhibit} {suppress_tap} tick {now}");
+        let why = format!("{history:?} {suppress} {inhibit} {suppress_tap} {kind} tick {now}");
         if wrote(row, 0) {
             existing.write(Time(now), &words(now, 0));
         }
@@ -122,6 +134,6 @@ pub(crate) fn tap_on_tap(history: &[u32], suppress: u64, inhibit: u64, suppress_
         line.tick(now, |s| if s == 0 { emits } else { wrote(row, 3) });
         let taps = line.held().is_some_and(|(t, _)| t == now);
         input.tick(now, |s| if s == 0 { wrote(row, 0) } else { taps });
-        assert_eq!(said(register.held()), input.held(), "{why}");
+        assert_eq!(said(register.held(), kind), input.held(), "{why}");
     }
 }

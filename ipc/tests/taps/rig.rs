@@ -13,30 +13,46 @@ use ipc::wire::{Limits, Page, Register, Room, TapEnd, TapGauge, Writer};
 
 use crate::model::Suppressor;
 
-pub(crate) const ANY: Limits = Limits {
-    kind: Kind::Vector,
-    low: -1e9,
-    high: 1e9,
-};
+/// Kinds of messages: of several words, and of one, which have ways of their own through registers and outlets.
+pub(crate) const KINDS: [Kind; 2] = [Kind::Vector, Kind::Number];
 
-/// A message that says when and by whom it was written.
+pub(crate) const fn any(kind: Kind) -> Limits {
+    Limits {
+        kind,
+        low: -1e9,
+        high: 1e9,
+    }
+}
+
+/// Most sources.
+const SOURCES_MAX: u64 = 16;
+
+/// A message that says when and by whom it was written, in its first word, and by whom in the second.
 pub(crate) fn words(tick: u64, source: usize) -> Words {
     let mut words = [0.0; WORDS_MAX];
-    words[0] = tick as f64;
+    words[0] = (tick * SOURCES_MAX + source as u64) as f64;
     words[1] = source as f64;
     words
 }
 
-pub(crate) fn said(held: Option<(Time, Words)>) -> Option<(u64, usize)> {
+/// When and by whom the message held of `kind` was written.
+pub(crate) fn said(held: Option<(Time, Words)>, kind: Kind) -> Option<(u64, usize)> {
     held.map(|(stamp, words)| {
-        assert_eq!(stamp.0, words[0] as u64, "a message keeps its own stamp");
-        (stamp.0, words[1] as usize)
+        let source = words[0] as u64 % SOURCES_MAX;
+        assert_eq!(
+            stamp.0,
+            words[0] as u64 / SOURCES_MAX,
+            "a message keeps its own stamp"
+        );
+        let second = if kind.single() { 0.0 } else { source as f64 };
+        assert_eq!(words[1], second, "the words of a message belong together");
+        (stamp.0, source as usize)
     })
 }
 
-pub(crate) fn end(page: &Arc<Page>, wire: usize, tau: u64, level: u8, plug: u32) -> TapEnd {
+pub(crate) fn end(page: &Arc<Page>, kind: Kind, wire: usize, tau: u64, level: u8, plug: u32) -> TapEnd {
     TapEnd {
-        reader: page.reader(wire, Kind::Vector).unwrap(),
+        reader: page.reader(wire, kind).unwrap(),
         time_constant: Span(tau),
         level,
         plug,
@@ -45,31 +61,33 @@ pub(crate) fn end(page: &Arc<Page>, wire: usize, tau: u64, level: u8, plug: u32)
     }
 }
 
-pub(crate) fn writers(page: &Arc<Page>) -> Vec<Writer> {
+pub(crate) fn writers(page: &Arc<Page>, kind: Kind) -> Vec<Writer> {
     (0..page.len())
-        .map(|wire| page.writer(wire, Kind::Vector).unwrap())
+        .map(|wire| page.writer(wire, kind).unwrap())
         .collect()
 }
 
 /// An input with its wire and taps on a page in memory.
 pub(crate) struct Real {
+    kind: Kind,
     pub(crate) writers: Vec<Writer>,
     pub(crate) gauges: Vec<Arc<TapGauge>>,
     pub(crate) register: Register,
 }
 
 impl Real {
-    pub(crate) fn new(suppressors: &[Suppressor]) -> Real {
+    pub(crate) fn new(suppressors: &[Suppressor], kind: Kind) -> Real {
         let page = Page::in_memory(suppressors.len() + 1);
         let mut gauges = Vec::new();
-        let mut register = Register::new(ANY, page.reader(0, Kind::Vector));
+        let mut register = Register::new(any(kind), page.reader(0, kind));
         for (k, s) in suppressors.iter().enumerate() {
-            let end = end(&page, k + 1, s.tau, s.level, 0);
+            let end = end(&page, kind, k + 1, s.tau, s.level, 0);
             gauges.push(end.gauge.clone());
             register.suppress(end).unwrap();
         }
         Real {
-            writers: writers(&page),
+            kind,
+            writers: writers(&page, kind),
             gauges,
             register,
         }
@@ -77,6 +95,11 @@ impl Real {
 
     pub(crate) fn write(&mut self, now: u64, source: usize) {
         self.writers[source].write(Time(now), &words(now, source));
+    }
+
+    /// When and by whom the message held was written.
+    pub(crate) fn held(&self) -> Option<(u64, usize)> {
+        said(self.register.held(), self.kind)
     }
 
     pub(crate) fn gather(&mut self, now: u64) {

@@ -3,10 +3,11 @@
 //! Must never look at a register other than a daemon may: after any message, or only now and then.
 
 use ipc::clock::{Span, Time};
+use ipc::message::Kind;
 use ipc::tap::{Window, emits, holder, passes};
 
 use crate::model::{Input, Suppressor};
-use crate::rig::{Real, choices, histories, said, suppressors, wrote};
+use crate::rig::{KINDS, Real, choices, histories, suppressors, wrote};
 
 /// How often and in which order a register is looked at.
 #[derive(Clone, Copy, Debug)]
@@ -27,8 +28,14 @@ pub(crate) const LOOKS: [Look; 5] = [
 
 /// Steps a register through a history beside the model.
 pub(crate) fn register_agrees(suppressors: &[Suppressor], history: &[u32], look: Look) {
+    for kind in KINDS {
+        register_of_kind_agrees(suppressors, history, look, kind);
+    }
+}
+
+fn register_of_kind_agrees(suppressors: &[Suppressor], history: &[u32], look: Look, kind: Kind) {
     let mut expected = Input::new(suppressors);
-    let mut real = Real::new(suppressors);
+    let mut real = Real::new(suppressors, kind);
     for (now, &row) in history.iter().enumerate() {
         let now = now as u64;
         expected.tick(now, |s| wrote(row, s));
@@ -58,11 +65,10 @@ pub(crate) fn register_agrees(suppressors: &[Suppressor], history: &[u32], look:
             }
         };
         if looked {
-            let held = said(real.register.held());
             assert_eq!(
-                held,
+                real.held(),
                 expected.held(),
-                "{suppressors:?} {history:?} {look:?} tick {now}"
+                "{suppressors:?} {history:?} {look:?} {kind} tick {now}"
             );
         }
         if let Look::Every(1) = look {

@@ -8,8 +8,6 @@
 //!   beat:  commands ─► gather registers, step modules (any order) ─► commit outlets, stamped together
 //! ```
 
-use std::ops::Range;
-
 use ipc::clock::Time;
 use ipc::message::Words;
 use ipc::wire::{Outlet, Reader, Register, TapEnd};
@@ -17,7 +15,8 @@ use ipc::wiring::creature::How;
 use rtrb::{Consumer, Producer};
 
 use crate::kind::ModuleKind;
-use crate::module::{Beat, Module};
+use crate::module::Module;
+use crate::seat::{Seat, Slots, step_all};
 use crate::trace::Tracer;
 
 /// A change to what reaches a running layer, made by a thread that is not real-time.
@@ -66,21 +65,12 @@ pub struct Hand {
     pub returned: Consumer<Returned>,
 }
 
-/// A module as it stands in a layer.
-struct Seat {
-    machine: Box<dyn Module>,
-    inputs: Range<usize>,
-    outputs: Range<usize>,
-    /// Whether its last input, the reset line, is connected.
-    reset: bool,
-}
-
 /// A layer that can be stepped.
 pub struct RunningLayer {
+    /// The modules, in the order in which they step.
     seats: Vec<Seat>,
-    /// What the modules are called, by seat: no beat asks for it.
+    /// What the modules are called, as they were seated: no beat asks for it.
     names: Vec<String>,
-    order: Vec<usize>,
     registers: Vec<Register>,
     outlets: Vec<Outlet>,
     commands: Consumer<Command>,
@@ -102,7 +92,6 @@ impl RunningLayer {
         let layer = RunningLayer {
             seats: Vec::new(),
             names: Vec::new(),
-            order: Vec::new(),
             registers: Vec::new(),
             outlets: Vec::new(),
             commands: command_out,
@@ -138,32 +127,36 @@ impl RunningLayer {
             "inputs of {name}"
         );
         assert_eq!(outlets.len(), kind.declaration.outputs.len(), "outputs of {name}");
-        let inputs = self.registers.len()..self.registers.len() + registers.len();
-        let outputs = self.outlets.len()..self.outlets.len() + outlets.len();
+        let inputs = Slots::new(self.registers.len(), registers.len());
+        let outputs = Slots::new(self.outlets.len(), outlets.len());
         self.registers.extend(registers);
         self.outlets.extend(outlets);
-        self.order.push(self.seats.len());
+        let number = u32::try_from(self.seats.len()).expect("a layer has fewer modules");
         self.names.push(name.into());
         self.seats.push(Seat {
             machine,
             inputs,
             outputs,
+            number,
             reset,
         });
     }
 
-    /// Steps the modules in another order from now on: `order` holds every index of a module once.
+    /// Steps the modules in another order from now on: `order` holds the number of every module once.
     ///
     /// # Panics
     /// When it doesn't.
-    pub fn set_order(&mut self, order: Vec<usize>) {
-        let mut sorted = order.clone();
-        sorted.sort_unstable();
+    pub fn set_order(&mut self, order: &[usize]) {
+        let mut places = vec![None; self.seats.len()];
+        for (place, &number) in order.iter().enumerate() {
+            places[number] = Some(place);
+        }
         assert!(
-            sorted.into_iter().eq(0..self.seats.len()),
+            places.iter().all(Option::is_some) && order.len() == places.len(),
             "an order names every module once"
         );
-        self.order = order;
+        self.seats
+            .sort_unstable_by_key(|seat| places[seat.number as usize]);
     }
 
     /// Traces every beat from now on.
@@ -194,8 +187,9 @@ impl RunningLayer {
 
     /// The state of the module called `name`.
     pub fn state_of(&self, name: &str) -> Option<&'static str> {
-        let seat = self.names.iter().position(|n| n == name)?;
-        Some(self.seats[seat].machine.state())
+        let number = self.names.iter().position(|n| n == name)?;
+        let seat = self.seats.iter().find(|seat| seat.number as usize == number)?;
+        Some(seat.machine.state())
     }
 
     /// The n-th input's register: inputs count module by module as they were seated, reset lines included.
@@ -256,14 +250,13 @@ impl RunningLayer {
         self.take_up();
         let RunningLayer {
             seats,
-            order,
             registers,
             outlets,
             returned,
             tracer,
             ..
         } = self;
-        let parts = (&order[..], &mut seats[..], &mut registers[..], &mut outlets[..]);
+        let parts = (&mut seats[..], &mut registers[..], &mut outlets[..]);
         match tracer {
             Some(tracer) => step_all(now, parts, returned, |slot, register| {
                 tracer.register(slot, register)
@@ -334,65 +327,21 @@ impl RunningLayer {
     fn connect(&mut self, input: usize, wire: Reader) {
         let before = match self.registers.get_mut(input) {
             Some(register) => register.connect(wire),
-            None => Some(wire),
+            None => wire,
         };
-        if let Some(wire) = before {
-            hand_over(&mut self.returned, Returned::Wire(wire));
-        }
+        hand_over(&mut self.returned, Returned::Wire(before));
     }
 
     /// A tap on a reset line connects it.
     fn connect_reset(&mut self, input: usize) {
-        if let Some(seat) = self.seats.iter_mut().find(|s| s.inputs.end == input + 1) {
+        if let Some(seat) = self.seats.iter_mut().find(|s| s.inputs.end as usize == input + 1) {
             seat.reset = true;
         }
     }
 }
 
-/// What a layer steps: the order, the modules, their registers and outlets.
-type Parts<'l> = (&'l [usize], &'l mut [Seat], &'l mut [Register], &'l mut [Outlet]);
-
-/// Gathers every register, which `gathered` then sees while the processor has it at hand, and steps every module.
-#[inline(always)]
-fn step_all(
-    now: Time,
-    (order, seats, registers, outlets): Parts<'_>,
-    returned: &mut Producer<Returned>,
-    mut gathered: impl FnMut(usize, &Register),
-) {
-    for &index in order {
-        let Seat {
-            machine,
-            inputs,
-            outputs,
-            reset,
-            ..
-        } = &mut seats[index];
-        let own = &mut registers[inputs.clone()];
-        let (reset_line, own) = own.split_last_mut().expect("every module has a reset line");
-        for (slot, register) in inputs.clone().zip(own.iter_mut()) {
-            register.gather(now, |end| give_back(returned, end));
-            gathered(slot, register);
-        }
-        if *reset {
-            reset_line.gather(now, |end| give_back(returned, end));
-            gathered(inputs.end - 1, reset_line);
-            if reset_line.arrived() {
-                machine.reset();
-                own.iter_mut().for_each(Register::clear);
-                continue;
-            }
-        }
-        machine.step(&mut Beat {
-            now,
-            inputs: own,
-            outputs: &mut outlets[outputs.clone()],
-        });
-    }
-}
-
 /// Hands a tap to the thread that may drop it.
-fn give_back(returned: &mut Producer<Returned>, end: TapEnd) {
+pub(crate) fn give_back(returned: &mut Producer<Returned>, end: TapEnd) {
     hand_over(returned, Returned::Tap(end));
 }
 

@@ -14,6 +14,7 @@ pub mod places;
 pub mod port;
 pub mod process;
 pub mod random;
+mod seat;
 pub mod trace;
 
 pub use kind::{Kinds, ModuleKind, Settings};
