@@ -151,8 +151,7 @@ impl Cell {
         if before == seen.wrapping_mul(2) {
             return None;
         }
-        // A sequence that went back to zero, which no writer of ours does, is a message like any other.
-        match self.attempt_at(before) {
+        match self.attempt(before) {
             Attempt::Whole(taken) => Some(taken),
             Attempt::Empty => None,
             Attempt::Disturbed => self.retry().filter(|taken| taken.number != seen),
@@ -180,12 +179,6 @@ impl Cell {
         if before == 0 {
             return Attempt::Empty;
         }
-        self.attempt_at(before)
-    }
-
-    /// As [`Cell::attempt`], where something was written.
-    #[inline(always)]
-    fn attempt_at<const N: usize>(&self, before: u64) -> Attempt<N> {
         if before & 1 == 1 {
             return Attempt::Disturbed;
         }
