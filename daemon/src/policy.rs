@@ -246,13 +246,14 @@ pub fn has_port(plug: &Plug, tap: &PlugTap) -> bool {
 pub fn tap_end(number: u32, plug: &Plug, tap: &PlugTap, page: &Arc<Page>, gauge: Arc<TapGauge>) -> TapEnd {
     let mut outputs = plug.outputs.iter();
     let index = outputs.position(|o| o.name == tap.from).expect("checked");
+    let kind = plug.outputs[index].kind;
     TapEnd {
-        reader: page.reader(index, plug.outputs[index].kind).expect("checked"),
+        reader: page.reader(index, kind).expect("checked"),
         time_constant: tap.time_constant,
         level: plug.level,
         plug: number,
         gauge,
-        room: Room::full(),
+        room: Room::full(kind),
     }
 }
 

@@ -206,13 +206,14 @@ impl Player {
                 seen: 0,
                 fed: 0,
             });
+            let room = Room::full(reader.kind());
             let end = TapEnd {
                 reader,
                 time_constant: Span(joined.time_constant_ns),
                 level: joined.level,
                 plug,
                 gauge: Arc::new(TapGauge::numbered(joined.tap)),
-                room: Room::full(),
+                room,
             };
             let _ = hand.commands.push(match joined.how {
                 How::Suppress => Command::Suppress(joined.slot, end),

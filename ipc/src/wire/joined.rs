@@ -3,13 +3,14 @@
 //!
 //! Must never decide what becomes of a message of the wire: that is for [`crate::tap`] to say.
 
+use std::mem::offset_of;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use super::limits::Limits;
 use super::page::Reader;
 use crate::clock::{Span, Time};
-use crate::message::{WORDS_MAX, Words};
+use crate::message::{Kind, Words};
 use crate::tap::Window;
 
 /// Most suppressors on one input, and inhibitors on one output: one for each level above it and then
@@ -45,18 +46,34 @@ pub struct TapEnd {
 /// Memory for the taps of one port, made by whoever may allocate and given back with the tap that brought it.
 /// Most ports are never tapped, so they have none of their own.
 #[derive(Debug, Default)]
-pub struct Room(Vec<Joined>);
+pub struct Room {
+    taps: Vec<Joined>,
+    pub(super) inhibitors: Option<Box<Inhibitors>>,
+    /// For the tap's own messages, if they are of several words.
+    words: Option<Box<Words>>,
+}
 
 impl Room {
     /// No room: for ports of a layer that does not beat yet.
     pub fn none() -> Room {
-        Room(Vec::new())
+        Room::default()
     }
 
-    /// Room for as many taps as a port may have.
-    pub fn full() -> Room {
-        Room(Vec::with_capacity(TAPS_MAX))
+    /// Room for a tap whose messages are of `kind`, and for as many as a port may have.
+    pub fn full(kind: Kind) -> Room {
+        Room {
+            taps: Vec::with_capacity(TAPS_MAX),
+            inhibitors: Some(Box::default()),
+            words: (!kind.single()).then(Box::default),
+        }
     }
+}
+
+/// The inhibitors on one output, and how many messages they dropped.
+#[derive(Debug, Default)]
+pub(super) struct Inhibitors {
+    pub(super) taps: Vec<Joined>,
+    pub(super) inhibited: u64,
 }
 
 /// Counters of a tap that other threads may look at.
@@ -156,12 +173,14 @@ impl std::ops::Add for TapCounts {
     }
 }
 
-/// A tap with what was last seen of it. What a beat touches of a silent one comes first and lies together.
+/// A tap with what was last seen of it. What a beat touches of a silent one is one line of the processor's cache.
 #[derive(Debug)]
-#[repr(C)]
+#[repr(C, align(64))]
 pub(super) struct Joined {
     pub(super) seen: u64,
-    pub(super) window: Option<Window>,
+    /// The stamp of its newest message, if it `said` one.
+    stamp: Time,
+    said: bool,
     /// Whether its newest message came in at the last look.
     pub(super) fresh: bool,
     /// What became of the message that the last look took in, if it took one in.
@@ -169,18 +188,26 @@ pub(super) struct Joined {
     /// Told to go; stays until its window has run out, so that nothing rejected comes back to life.
     pub(super) leaving: bool,
     pub(super) end: TapEnd,
-    pub(super) words: Words,
+    /// Its newest message, if that is of one word; else it lies in the room that the tap brought.
+    word: f64,
 }
 
+const _: () = assert!(size_of::<Joined>() == 128 && offset_of!(Joined, end.time_constant) == 48);
+
 impl Joined {
-    pub(super) fn new(end: TapEnd) -> Joined {
+    /// Does not allocate if the tap brings [`Room::full`].
+    pub(super) fn new(mut end: TapEnd) -> Joined {
         // A message written before the tap was joined has no effect: the wire was not tapped then.
         let seen = end.reader.read().map_or(0, |r| r.number);
+        if !end.reader.kind().single() {
+            end.room.words.get_or_insert_default();
+        }
         Joined {
             end,
             seen,
-            window: None,
-            words: [0.0; WORDS_MAX],
+            stamp: Time::ZERO,
+            said: false,
+            word: 0.0,
             fresh: false,
             fate: None,
             leaving: false,
@@ -210,20 +237,20 @@ impl Joined {
         };
         let Some((number, stamp)) = taken else { return };
         self.seen = number;
-        let newest = self.window.map_or(Time::ZERO, |w| w.stamp);
         let stamp = match plausible(stamp, now) {
-            Some(stamp) if stamp >= newest && limits.is_none_or(|l| l.accept(&words)) => stamp,
+            Some(stamp) if stamp >= self.stamp && limits.is_none_or(|l| l.accept(&words)) => stamp,
             _ => {
                 count(&self.end.gauge.faults);
                 self.fate = Some(Fate::Fault);
                 return;
             }
         };
-        self.window = Some(Window {
-            stamp,
-            time_constant: self.end.time_constant,
-        });
-        self.words[..N].copy_from_slice(&words);
+        self.stamp = stamp;
+        self.said = true;
+        match &mut self.end.room.words {
+            Some(all) => all[..N].copy_from_slice(&words),
+            None => self.word = words[0],
+        }
         self.fresh = true;
         self.fate = Some(Fate::Rejected);
     }
@@ -245,22 +272,38 @@ impl Joined {
         Some(TapLook {
             tap: self.end.gauge.number,
             number: self.seen,
-            stamp: self.window.map_or(Time::ZERO, |w| w.stamp),
-            words: &self.words[..self.end.reader.kind().words()],
+            stamp: self.stamp,
+            words: &self.words()[..self.end.reader.kind().words()],
             fate,
         })
     }
 
+    /// The window that its newest message holds open; `None` if it said nothing yet.
+    #[inline]
+    pub(super) fn window(&self) -> Option<Window> {
+        let time_constant = self.end.time_constant;
+        let stamp = self.stamp;
+        self.said.then_some(Window { stamp, time_constant })
+    }
+
+    /// The words of its newest message.
+    pub(super) fn words(&self) -> &[f64] {
+        match &self.end.room.words {
+            Some(words) => &words[..],
+            None => std::slice::from_ref(&self.word),
+        }
+    }
+
     pub(super) fn state(&self) -> TapState {
         TapState {
-            window: self.window,
+            window: self.window(),
             counts: self.end.gauge.counts(),
         }
     }
 
     #[inline]
     pub(super) fn gone(&self, now: Time) -> bool {
-        self.leaving && self.window.is_none_or(|w| now >= w.stamp + w.time_constant)
+        self.leaving && self.window().is_none_or(|w| now >= w.stamp + w.time_constant)
     }
 }
 
@@ -285,11 +328,11 @@ pub(super) fn join(taps: &mut Vec<Joined>, mut end: TapEnd) -> Result<(), TapEnd
     if taps.len() == TAPS_MAX {
         return Err(end);
     }
-    if taps.len() == taps.capacity() && end.room.0.capacity() > taps.len() {
+    if taps.len() == taps.capacity() && end.room.taps.capacity() > taps.len() {
         // Moves into the room that came along; the old one leaves with the tap.
-        let mut room = std::mem::take(&mut end.room.0);
+        let mut room = std::mem::take(&mut end.room.taps);
         room.append(taps);
-        end.room.0 = std::mem::replace(taps, room);
+        end.room.taps = std::mem::replace(taps, room);
     }
     if taps.len() == taps.capacity() {
         // One more than there is: a vector left to itself takes room for four at once.
@@ -312,7 +355,7 @@ pub(super) fn release(taps: &mut [Joined], plug: Plug) {
 
 pub(super) fn window_of(taps: &[Joined], gauge: &Arc<TapGauge>) -> Option<Window> {
     let tap = taps.iter().find(|t| Arc::ptr_eq(&t.end.gauge, gauge))?;
-    tap.window
+    tap.window()
 }
 
 /// Hands over the taps that have left and whose windows have run out.
@@ -331,7 +374,6 @@ pub(super) fn sweep(taps: &mut Vec<Joined>, now: Time, mut gone: impl FnMut(TapE
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::message::Kind;
     use crate::wire::Page;
 
     fn end(level: u8, room: Room) -> TapEnd {
@@ -351,8 +393,8 @@ mod tests {
         // Full with one tap: the next needs room.
         let mut taps = Vec::with_capacity(1);
         join(&mut taps, end(3, Room::none())).expect("room for the file's own");
-        let room = Room::full();
-        let (place, size) = (room.0.as_ptr(), room.0.capacity());
+        let room = Room::full(Kind::Number);
+        let (place, size) = (room.taps.as_ptr(), room.taps.capacity());
         join(&mut taps, end(1, room)).expect("room came along");
         assert_eq!(
             (taps.as_ptr(), taps.capacity()),
@@ -361,7 +403,7 @@ mod tests {
         );
         // The next ones need none of theirs, and give it back untouched.
         for level in [2, 5, 4] {
-            join(&mut taps, end(level, Room::full())).expect("room is there");
+            join(&mut taps, end(level, Room::full(Kind::Number))).expect("room is there");
             assert_eq!(taps.as_ptr(), place);
         }
         let levels: Vec<u8> = taps.iter().map(|t| t.end.level).collect();
@@ -380,8 +422,8 @@ mod tests {
     fn there_is_an_end_to_taps() {
         let mut taps = Vec::new();
         for _ in 0..TAPS_MAX {
-            join(&mut taps, end(1, Room::full())).expect("within the bound");
+            join(&mut taps, end(1, Room::full(Kind::Number))).expect("within the bound");
         }
-        assert!(join(&mut taps, end(1, Room::full())).is_err());
+        assert!(join(&mut taps, end(1, Room::full(Kind::Number))).is_err());
     }
 }

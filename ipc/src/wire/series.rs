@@ -21,7 +21,7 @@ impl Register {
     pub(super) fn quiet(&mut self, stamp: Option<Time>) -> bool {
         let mut quiet = true;
         for tap in &mut self.taps {
-            let holds = || stamp.is_some_and(|u| tap.window.is_some_and(|w| w.holds(u)));
+            let holds = || stamp.is_some_and(|u| tap.window().is_some_and(|w| w.holds(u)));
             quiet &= !tap.leaving && !holds();
             quiet &= !tap.has_news();
         }
@@ -70,7 +70,7 @@ impl Register {
         let original = original.filter(|(stamp, _)| self.passes_all(*stamp));
         let mut newest = original.map(|(stamp, _)| (stamp, From::Wire));
         for k in 0..self.taps.len() {
-            let (fresh, Some(window)) = (self.taps[k].fresh, self.taps[k].window) else {
+            let (fresh, Some(window)) = (self.taps[k].fresh, self.taps[k].window()) else {
                 continue;
             };
             let passes = if fresh {
@@ -78,7 +78,7 @@ impl Register {
             } else {
                 // Looked at before, and counted then.
                 let above = &self.taps[k + 1..];
-                in_hindsight && tap::passes(window.stamp, above.iter().filter_map(|t| t.window))
+                in_hindsight && tap::passes(window.stamp, above.iter().filter_map(|t| t.window()))
             };
             if passes {
                 if fresh {
@@ -92,7 +92,9 @@ impl Register {
         let Some((stamp, from)) = newest else { return };
         let mut words = original.map_or([0.0; N], |(_, words)| words);
         if let From::Tap(k) = from {
-            words.copy_from_slice(&self.taps[k].words[..N]);
+            let own = self.taps[k].words();
+            let length = own.len().min(N);
+            words[..length].copy_from_slice(&own[..length]);
         }
         self.deliver(stamp, &words);
     }
@@ -109,12 +111,12 @@ impl Register {
         let from = self
             .taps
             .iter()
-            .rposition(|t| t.window.is_some_and(|w| w.stamp == held) && !t.fresh)
+            .rposition(|t| t.window().is_some_and(|w| w.stamp == held) && !t.fresh)
             .map_or(0, |k| k + 1);
         let above = &self.taps[from..];
         above
             .iter()
-            .any(|t| t.fresh && t.window.is_some_and(|w| w.holds(held)))
+            .any(|t| t.fresh && t.window().is_some_and(|w| w.holds(held)))
     }
 
     /// Whether the existing wire's message, stamped `u`, gets through all suppressors; counts it if not.
@@ -133,10 +135,10 @@ impl Register {
     #[inline]
     fn passes_from(&mut self, first: usize, u: Time) -> bool {
         let above = &self.taps[first..];
-        if tap::passes(u, above.iter().filter_map(|t| t.window)) {
+        if tap::passes(u, above.iter().filter_map(|t| t.window())) {
             return true;
         }
-        if let Some(tap) = above.iter().rfind(|t| t.window.is_some_and(|w| w.holds(u))) {
+        if let Some(tap) = above.iter().rfind(|t| t.window().is_some_and(|w| w.holds(u))) {
             tap.reject();
         }
         false

@@ -43,6 +43,12 @@ pub fn assemble(
     seed: u64,
 ) -> (RunningLayer, Hand) {
     let (mut running, hand) = RunningLayer::new();
+    let ports = |of: fn(&Declaration) -> usize| layer.modules.iter().map(|m| of(m.declaration)).sum();
+    running.reserve(
+        layer.modules.len(),
+        ports(|d| inputs(d).count()),
+        ports(|d| d.outputs.len()),
+    );
     let mut cell = first;
     for module in &layer.modules {
         let declaration = module.declaration;
@@ -88,7 +94,7 @@ pub fn assemble(
     (running, hand)
 }
 
-fn inputs(declaration: &'static Declaration) -> impl Iterator<Item = &'static catalog::Port> {
+fn inputs(declaration: &Declaration) -> impl Iterator<Item = &'static catalog::Port> {
     declaration.inputs.iter().chain(std::iter::once(&catalog::RESET))
 }
 

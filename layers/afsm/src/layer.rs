@@ -107,6 +107,15 @@ impl RunningLayer {
         )
     }
 
+    /// Makes room for so many more modules, registers (a reset line for each module among them) and outlets, so that they
+    /// lie close together.
+    pub fn reserve(&mut self, modules: usize, registers: usize, outlets: usize) {
+        self.seats.reserve_exact(modules);
+        self.names.reserve_exact(modules);
+        self.registers.reserve_exact(registers);
+        self.outlets.reserve_exact(outlets);
+    }
+
     /// Seats a module of `kind`: `registers` in the order of its declaration with the reset line last,
     /// `outlets` in the order of its declaration.
     ///

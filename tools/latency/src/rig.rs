@@ -118,6 +118,7 @@ impl Rig {
         let (mut running, mut hands) = (Vec::new(), Vec::new());
         for l in 0..layers {
             let (mut layer, hand) = RunningLayer::new();
+            layer.reserve(each, 3 * each, each);
             for m in 0..each {
                 let i = l * each + m;
                 let (registers, outlet) = ports(page, i, modules);

@@ -134,7 +134,12 @@ impl Beats for Group {
     fn beat(&mut self, now: Time) {
         self.0.layers.iter_mut().for_each(|layer| layer.step(now));
         let stamp = clock::monotonic();
-        self.0.layers.iter_mut().for_each(|layer| layer.commit(stamp));
+        // As the daemon does: what was stepped last is at hand still.
+        self.0
+            .layers
+            .iter_mut()
+            .rev()
+            .for_each(|layer| layer.commit(stamp));
     }
 }
 

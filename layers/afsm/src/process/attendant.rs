@@ -168,7 +168,7 @@ impl Attendant {
             level: join.level,
             plug: join.plug,
             gauge: gauge.clone(),
-            room: Room::full(),
+            room: Room::full(join.from.kind),
         };
         self.command(Command::join(join.how, port, end), gone)?;
         self.taps.push(Held {
