@@ -6,6 +6,7 @@
 //! *Register*: the one-element buffer behind an input port. *Outlet*: the writing end behind an output port.
 
 pub mod cell;
+pub mod gauge;
 pub mod iceoryx;
 pub mod joined;
 pub mod limits;
@@ -17,7 +18,8 @@ mod series;
 mod sync;
 
 pub use cell::{LAYOUT, Reading};
-pub use joined::{AHEAD_MAX, Fate, Plug, Room, TAPS_MAX, TapCounts, TapEnd, TapGauge, TapLook, TapState};
+pub use gauge::{TapCounts, TapGauge};
+pub use joined::{AHEAD_MAX, Fate, Plug, Room, TAPS_MAX, TapEnd, TapLook, TapState};
 pub use limits::Limits;
 pub use outlet::{Outlet, OutputCounts};
 pub use page::{Page, Reader, WIRES_MAX, Writer};

@@ -9,9 +9,8 @@
 
 use std::sync::Arc;
 
-use super::joined::{
-    Inhibitors, Joined, Plug, TapEnd, TapGauge, TapLook, TapState, join, release, sweep, window_of,
-};
+use super::gauge::TapGauge;
+use super::joined::{Inhibitors, Joined, Plug, TapEnd, TapLook, TapState, join, release, sweep, window_of};
 use super::page::Writer;
 use crate::clock::Time;
 use crate::message::{Kind, Payload, WORDS_MAX, Words};

@@ -10,9 +10,8 @@
 use std::mem::offset_of;
 use std::sync::Arc;
 
-use super::joined::{
-    Fate, Joined, Plug, TapEnd, TapGauge, TapLook, TapState, join, plausible, release, window_of,
-};
+use super::gauge::TapGauge;
+use super::joined::{Fate, Joined, Plug, TapEnd, TapLook, TapState, join, plausible, release, window_of};
 use super::limits::Limits;
 use super::page::Reader;
 use crate::clock::Time;
