@@ -51,6 +51,8 @@ pub struct Record {
     period_error: Histogram<u64>,
     /// When the thread woke for the beat before; none before the first.
     woke: Option<(Time, Time)>,
+    /// Who it tells of when a deadline is missed; nobody if another member of its group does.
+    teller: Option<String>,
     /// Counters at the last look, to notice what is new.
     before: BeatCounts,
     /// Longest latency of each of the last seconds, oldest first, in microseconds.
@@ -86,10 +88,18 @@ impl Record {
             response: histogram(),
             period_error: histogram(),
             woke: None,
+            teller: Some(name.into()),
             before: BeatCounts::default(),
             trail: VecDeque::new(),
             longest: (0.0, 0),
         }
+    }
+
+    /// Its thread has several members, which miss the same deadlines: it tells of them as `teller`, or leaves that to
+    /// another.
+    #[must_use]
+    pub fn telling(self, teller: Option<String>) -> Record {
+        Record { teller, ..self }
     }
 
     /// Takes in what was measured since the last look; says in words what deadlines were missed.
@@ -108,17 +118,16 @@ impl Record {
         self.keep_trail();
         let now = self.gauge.counts();
         let before = std::mem::replace(&mut self.before, now);
+        let teller = self.teller.as_ref()?;
         if now.identity_faults > before.identity_faults {
             return Some(format!(
-                "{}: beats and skipped beats do not add up to the time elapsed",
-                self.name
+                "{teller}: beats and skipped beats do not add up to the time elapsed"
             ));
         }
         let (missed, over) = (now.missed - before.missed, now.overruns - before.overruns);
         (missed + over > 0).then(|| {
             format!(
-                "{} missed {missed} deadlines ({over} of its own making, {} skipped; {} of {} beats so far, at most {} in a row)",
-                self.name,
+                "{teller} missed {missed} deadlines ({over} of its own making, {} skipped; {} of {} beats so far, at most {} in a row)",
                 now.skipped - before.skipped,
                 now.missed,
                 now.beats,
@@ -319,4 +328,56 @@ pub fn layers(records: &[Record]) -> Vec<Value> {
 /// The time now, for those who show things.
 pub fn now() -> Time {
     clock::monotonic()
+}
+
+#[cfg(test)]
+mod tests {
+    use ipc::clock::Span;
+    use ipc::wiring::creature::Overrun;
+
+    use super::*;
+    use crate::executor::Schedule;
+    use crate::executor::deadline::Verdict;
+
+    #[test]
+    fn one_layer_tells_of_the_deadlines_that_its_group_missed() {
+        let plan = Plan {
+            name: "low".into(),
+            period: Span::millis(1),
+            phase: Span::ZERO,
+            schedule: Schedule::Fifo(79),
+            cpu: None,
+            wake: Wake::Sleep,
+            overrun: Overrun::Skip,
+            sealed: true,
+        };
+        let record = |name| {
+            let (_, samples) = rtrb::RingBuffer::new(1);
+            Record::new(name, Some(0), &plan, Arc::default(), samples)
+        };
+        let mut records = [
+            record("alone"),
+            record("first").telling(Some("the group low (2 layers)".into())),
+            record("second").telling(None),
+        ];
+        let missed = Verdict {
+            missed: true,
+            ..Verdict::default()
+        };
+        let told = records.each_mut().map(|record| {
+            record.gauge.judged(Time(1), missed, true);
+            record.drain()
+        });
+        assert!(
+            told[0]
+                .as_deref()
+                .is_some_and(|t| t.starts_with("alone missed 1 deadlines"))
+        );
+        assert!(
+            told[1]
+                .as_deref()
+                .is_some_and(|t| t.starts_with("the group low (2 layers) missed 1 deadlines"))
+        );
+        assert_eq!(told[2], None);
+    }
 }

@@ -143,8 +143,14 @@ impl Crew {
                 took,
             };
             let samples = self.beat(plan.clone(), beats, gauges.clone())?;
+            let members = specs.len();
             for (((index, spec), gauge), samples) in layers.into_iter().zip(&specs).zip(gauges).zip(samples) {
-                let record = Record::new(&spec.name, Some(spec.level), &plan, gauge, samples);
+                let mut record = Record::new(&spec.name, Some(spec.level), &plan, gauge, samples);
+                if members > 1 {
+                    let group = || format!("the group {} ({members} layers)", plan.name);
+                    let first = spec.name == specs[0].name;
+                    record = record.telling(first.then(group));
+                }
                 records.push((index, record));
             }
         }

@@ -10,6 +10,7 @@ pub mod command;
 pub mod company;
 pub mod compare;
 pub mod creature;
+pub mod crowd;
 pub mod cyclictest;
 pub mod gate;
 pub mod load;

@@ -15,6 +15,7 @@ use ipc::wire::iceoryx::Domain;
 use ipc::wiring::creature::{Overrun, Wake};
 use serde_json::{Value, json};
 
+use crate::crowd;
 use crate::rig::Rig;
 use crate::track::histogram;
 
@@ -64,17 +65,20 @@ pub fn command(args: &ScaleArgs, json: bool) -> ExitCode {
     let paced: Result<Vec<Value>, String> = paced
         .map(|(layers, each)| pace(cpu, layers, each, lengths))
         .collect();
-    let waking = beat_at_1khz(cpu, Nothing, lengths);
-    let (paced, waking) = match (paced, waking) {
-        (Ok(paced), Ok(waking)) => (paced, waking),
-        (Err(message), _) | (_, Err(message)) => {
+    let measured = paced.and_then(|paced| {
+        let waking = beat_at_1khz(cpu, Nothing, lengths)?;
+        Ok((paced, waking, whole(cpu, 100, 10, lengths)?))
+    });
+    let (paced, waking, whole) = match measured {
+        Ok(measured) => measured,
+        Err(message) => {
             eprintln!("subsumectl scale: {message}");
             return ExitCode::FAILURE;
         }
     };
     let report = json!({
         "cpu": cpu, "bound": bound.map(|b| b.to_string()), "hot": line, "at_1khz": paced,
-        "waking_at_1khz": waking, "memory": weight,
+        "waking_at_1khz": waking, "daemon_at_1khz": whole, "memory": weight,
     });
     if json {
         println!("{report:#}");
@@ -210,6 +214,37 @@ fn beat_at_1khz(cpu: usize, beats: impl Beats, length: Duration) -> Result<Value
     }))
 }
 
+/// A whole daemon with such a creature: what share of a processor its group's thread takes, and what its other threads do.
+fn whole(cpu: usize, layers: usize, each: usize, length: Duration) -> Result<Value, String> {
+    let running = crowd::start(cpu, layers, each)?;
+    std::thread::sleep(Duration::from_millis(500));
+    let group = running.threads().first().map_or(0, |(_, tid)| *tid);
+    let (thread, process, began) = (ran(group), ran_in_all(), Instant::now());
+    std::thread::sleep(length);
+    let passed = began.elapsed().as_nanos() as f64;
+    let (thread, process) = (ran(group) - thread, ran_in_all() - process);
+    let records = running.records.lock().expect("nobody panics holding the records");
+    let counts = records[0].gauge.counts();
+    drop(records);
+    let refusals: Vec<String> = running.refusals.iter().map(ToString::to_string).collect();
+    running.shut_down();
+    Ok(json!({
+        "layers": layers, "modules": layers * each, "wires": 2 * layers * each, "processor_share": thread as f64 / passed,
+        "other_threads_share": process.saturating_sub(thread) as f64 / passed,
+        "beats": counts.beats, "missed": counts.missed, "refusals": refusals,
+    }))
+}
+
+/// Nanoseconds that all threads of this process have run.
+fn ran_in_all() -> u64 {
+    let threads = std::fs::read_dir("/proc/self/task")
+        .into_iter()
+        .flatten()
+        .flatten();
+    let tids = threads.filter_map(|t| t.file_name().to_str()?.parse().ok());
+    tids.map(ran).sum()
+}
+
 /// Nanoseconds that a thread of this process has run.
 fn ran(tid: i32) -> u64 {
     let text = std::fs::read_to_string(format!("/proc/self/task/{tid}/schedstat")).unwrap_or_default();
@@ -292,6 +327,16 @@ fn print(report: &Value) {
             f("module_p50_ns")
         );
     }
+    let whole = |key: &str| report["daemon_at_1khz"][key].as_f64().unwrap_or(0.0);
+    println!(
+        "\nin a whole daemon, traced and measured: {} modules in {} layers of one group on {} wires take {:.2} % in the group's \
+         thread, {:.2} % in the ordinary threads beside it",
+        whole("modules"),
+        whole("layers"),
+        whole("wires"),
+        100.0 * whole("processor_share"),
+        100.0 * whole("other_threads_share")
+    );
     println!(
         "\nmemory: {} bytes a wire, {} bytes a module ({})",
         report["memory"]["wire_bytes"],
