@@ -1,6 +1,6 @@
 //! The trucks' arena: where genomes of four digits meet in games of Truckin'.
 
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 use crate::evolve::{Arena, Genome};
 use crate::ootland::{Chance, Game, World};
@@ -72,10 +72,14 @@ impl TruckArena {
     ///
     /// Each truck in turn takes the first seat of the same games against the same opponents, which
     /// are drawn for each game, so that differences between trucks are differences within games.
-    pub fn trial(&self, games: u32, progress: &(dyn Fn(u64) + Sync)) -> Vec<Vec<i64>> {
+    ///
+    /// Once `stop` is raised no further game begins: then there are only those up to then.
+    pub fn trial(&self, games: u32, progress: &(dyn Fn(u64) + Sync), stop: &AtomicBool) -> Vec<Vec<i64>> {
         let all = all_chromosomes();
         let seed = self.seed ^ UNSEEN_SEED;
-        let by_game = parallel(self.threads, games as usize, |number| {
+        // Relaxed: the flag guards nothing but itself.
+        let go_on = || !stop.load(Ordering::Relaxed);
+        let by_game = parallel(self.threads, games as usize, &go_on, |number| {
             let mut chance = Chance::new(seed.wrapping_add(1), number as u64);
             let mut playing: Vec<Chromosome> = (0..self.trucks)
                 .map(|_| all[chance.below(all.len() as u32) as usize])
@@ -109,7 +113,7 @@ impl Arena for TruckArena {
 
     fn fitness(&self, generation: u32, population: &[Genome]) -> Vec<i64> {
         let members: Vec<Chromosome> = population.iter().map(chromosome_of).collect();
-        let rounds = parallel(self.threads, self.games as usize, |round| {
+        let rounds = parallel(self.threads, self.games as usize, &|| true, |round| {
             self.round(generation, round as u32, &members)
         });
         (0..members.len())
@@ -127,8 +131,13 @@ pub fn chromosome_of(genome: &Genome) -> Chromosome {
     Chromosome::new(genes).expect("genes drawn from the arena's kinds")
 }
 
-/// `of(0)`, `of(1)`, ... on several threads; the order of the answers does not depend on them.
-fn parallel<T: Send>(threads: usize, count: usize, of: impl Fn(usize) -> T + Sync) -> Vec<T> {
+/// `of(0)`, `of(1)`, ... on several threads, as long as `go_on` says so; the order of the answers does not depend on them.
+fn parallel<T: Send>(
+    threads: usize,
+    count: usize,
+    go_on: &(dyn Fn() -> bool + Sync),
+    of: impl Fn(usize) -> T + Sync,
+) -> Vec<T> {
     let next = AtomicUsize::new(0);
     let mut answers: Vec<(usize, T)> = std::thread::scope(|scope| {
         let workers: Vec<_> = (0..threads.max(1))
@@ -137,6 +146,10 @@ fn parallel<T: Send>(threads: usize, count: usize, of: impl Fn(usize) -> T + Syn
                     let mut mine = Vec::new();
                     loop {
                         // Relaxed: the counter only hands out numbers; joining carries the answers.
+                        // Whoever takes a number answers it, so that there is no gap where it was stopped.
+                        if !go_on() {
+                            return mine;
+                        }
                         let index = next.fetch_add(1, Ordering::Relaxed);
                         if index >= count {
                             return mine;

@@ -1,5 +1,9 @@
 //! Evolution: the source's example, its shares, and a creature that is no truck.
 
+use std::io::{BufRead, BufReader};
+use std::process::{Command, Stdio};
+
+use tempfile::TempDir;
 use truckin::arena::TruckArena;
 use truckin::evolve::{Arena, Breeding, Evolution, Genome, crossover};
 use truckin::ootland::{Chance, World};
@@ -80,4 +84,45 @@ fn trucks_evolve_the_same_on_any_number_of_threads() {
         (0..3).map(|_| evolution.next_generation()).collect::<Vec<_>>()
     };
     assert_eq!(evolve(1), evolve(3));
+}
+
+#[test]
+fn ctrl_c_reports_the_generations_so_far() {
+    let place = TempDir::new().expect("a folder");
+    let report = place.path().join("stopped.html");
+    // It does not end by itself before it is told to.
+    let mut child = Command::new(env!("CARGO_BIN_EXE_truckin"))
+        .args([
+            "evolve",
+            "--generations",
+            "100000",
+            "--population",
+            "5",
+            "--games",
+            "1",
+        ])
+        .args(["--slots", "50", "--threads", "1", "--report"])
+        .arg(&report)
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("the command starts");
+    let mut lines = BufReader::new(child.stdout.take().expect("piped")).lines();
+    for _ in 0..3 {
+        let line = lines.next().expect("a generation").expect("text");
+        assert!(line.starts_with("generation"), "{line}");
+    }
+    let told = Command::new("kill")
+        .args(["-INT", &child.id().to_string()])
+        .status();
+    assert!(told.expect("kill starts").success());
+    let rest: Vec<String> = lines.map(|line| line.expect("text")).collect();
+    let done = child.wait_with_output().expect("its end");
+    let said = String::from_utf8_lossy(&done.stderr);
+    assert_eq!(done.status.code(), Some(130), "{said}");
+    let generations = 3 + rest.iter().filter(|line| line.starts_with("generation")).count();
+    let kept = format!("{generations} of 100000 generations, 0 of 1000 games of the trial");
+    assert!(said.contains(&kept), "{said}");
+    let page = std::fs::read_to_string(&report).expect("the report");
+    assert!(page.contains(&kept), "the report says so too");
 }

@@ -2,11 +2,12 @@
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
+use std::sync::atomic::Ordering;
 
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 
-use super::inputs::{self, Trouble, at_least_one, say, threads};
+use super::inputs::{self, Trouble, at_least_one, say, stop_on_signals, threads};
 use crate::arena::{TruckArena, chromosome_of};
 use crate::evolve::{Breeding, Evolution, Generation, Genome};
 use crate::grid::read_results;
@@ -77,33 +78,66 @@ pub(super) fn run(args: &EvolveArgs) -> Result<(), Trouble> {
     let breeding = Breeding::of(usize::from(args.population));
     let mut evolution = Evolution::new(&arena, breeding, Chance::new(args.seed, u64::MAX));
     let mut generations = Vec::new();
-    for _ in 0..args.generations {
+    let stop = stop_on_signals();
+    // Relaxed: the flag guards nothing but itself.
+    let stopped = || stop.load(Ordering::Relaxed);
+    while generations.len() < args.generations as usize && !stopped() {
         let generation = evolution.next_generation();
         say(&line(&generation, args.games))?;
         generations.push(generation);
+    }
+    if generations.is_empty() {
+        return Err(Trouble::Stopped("stopped before the first generation".to_owned()));
     }
     let evolved = champion(&generations);
     say(&format!("evolved: {evolved}"))?;
     let bar = ProgressBar::new(u64::from(args.trial_games));
     let style = ProgressStyle::with_template("{bar:30} {percent:>3} % of the trial  {eta_precise} left");
     bar.set_style(style.expect("a template that was tried"));
-    let profits = arena.trial(args.trial_games, &|games| bar.inc(games));
+    let profits = arena.trial(args.trial_games, &|games| bar.inc(games), &stop);
     bar.finish_and_clear();
-    let trial = Trial::new(evolved, &profits);
-    say(&trial.summary())?;
+    let tried = profits.first().map_or(0, Vec::len);
+    // A mean has a deviation from two games on.
+    let trial = (tried >= 2).then(|| Trial::new(evolved, &profits));
+    if let Some(trial) = &trial {
+        say(&trial.summary())?;
+    }
     let mut page = Page::new("Truckin': evolution");
     page.paragraph(&format!(
         "{} generations of {} trucks, each in {} games of {} trucks and {} slots, seed {}.",
-        args.generations, args.population, args.games, args.trucks, args.slots, args.seed
+        generations.len(),
+        args.population,
+        args.games,
+        args.trucks,
+        args.slots,
+        args.seed
     ));
+    let kept = format!(
+        "{} of {} generations, {tried} of {} games of the trial",
+        generations.len(),
+        args.generations,
+        args.trial_games
+    );
+    let cut = generations.len() < args.generations as usize || tried < args.trial_games as usize;
+    if cut {
+        page.paragraph(&format!("It was stopped after {kept}."));
+    }
     report::evolution::add_to(&mut page, &generations, args.games);
-    report::evolution::add_trial(&mut page, &trial);
+    if let Some(trial) = &trial {
+        report::evolution::add_trial(&mut page, trial);
+    }
     if let Some(grid) = grid {
         report::experiment::add_to(&mut page, &grid.rows);
     }
     let path = &args.report;
     page.write(path)
         .map_err(|error| Trouble::Failed(format!("{}: {error}", path.display())))?;
+    if cut {
+        return Err(Trouble::Stopped(format!(
+            "{}: stopped; the report is of {kept}. The same command begins anew",
+            path.display()
+        )));
+    }
     say(&format!("{}: the report", path.display()))
 }
 

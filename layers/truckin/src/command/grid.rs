@@ -2,14 +2,13 @@
 
 use std::ops::ControlFlow;
 use std::path::PathBuf;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::Ordering;
 use std::time::Instant;
 
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 
-use super::inputs::{self, Trouble, at_least_one, say, threads};
+use super::inputs::{self, Trouble, at_least_one, say, stop_on_signals, threads};
 use crate::grid::experiment::GAMES_MAX;
 use crate::grid::{Experiment, Progress, read_results, run as play};
 use crate::ootland::rules::{SLOTS_MAX, TRUCKS_MAX};
@@ -75,12 +74,7 @@ pub(super) fn run(args: &GridArgs) -> Result<(), Trouble> {
         "{bar:30} {percent:>3} %  {human_pos} of {human_len} truck-slots  {per_sec}  {eta_precise} left",
     );
     bar.set_style(style.expect("a template that was tried"));
-    let stop = Arc::new(AtomicBool::new(false));
-    for signal in [signal_hook::consts::SIGINT, signal_hook::consts::SIGTERM] {
-        // The second one ends the program at once.
-        let _ = signal_hook::flag::register_conditional_default(signal, stop.clone());
-        let _ = signal_hook::flag::register(signal, stop.clone());
-    }
+    let stop = stop_on_signals();
     let begun = Instant::now();
     let mut first: Option<Progress> = None;
     let mut last = Progress {
