@@ -5,6 +5,7 @@
 
 use std::time::{Duration, Instant};
 
+use afsm::Kinds;
 use daemon::admission::Admission;
 use daemon::control::{self, Control};
 use daemon::feeder::Fed;
@@ -94,6 +95,21 @@ pub fn checked(setting: &Setting, name: &str) -> Creature {
     creature
 }
 
+/// Starts a creature's threads under its name, as a daemon does, but for the control socket.
+///
+/// # Errors
+/// When the host refuses shared memory or a thread.
+pub(crate) fn start(creature: Creature, kinds: &Kinds) -> Result<Running, String> {
+    let name = creature.name.clone();
+    let domain = Domain::join(&name).map_err(|e| e.to_string())?;
+    let owned = domain
+        .own(&name, output_ports(&creature).count())
+        .map_err(|e| e.to_string())?;
+    let machine = Machine::new(creature, kinds, owned.page().clone(), None);
+    let settings = recorder::Settings::default();
+    running::start(&name, machine, owned, domain, &settings, None, Fed::default()).map_err(|e| e.to_string())
+}
+
 impl Alive {
     /// Starts the creature.
     ///
@@ -104,14 +120,7 @@ impl Alive {
         let creature = checked(setting, &name);
         let admission = Admission::of(&creature.outsiders)?;
         control::claim(&name).map_err(|e| e.to_string())?;
-        let domain = Domain::join(&name).map_err(|e| e.to_string())?;
-        let owned = domain
-            .own(&name, output_ports(&creature).count())
-            .map_err(|e| e.to_string())?;
-        let machine = Machine::new(creature, &modules::kinds(), owned.page().clone(), None);
-        let settings = recorder::Settings::default();
-        let running = running::start(&name, machine, owned, domain, &settings, None, Fed::default())
-            .map_err(|e| e.to_string())?;
+        let running = start(creature, &modules::kinds())?;
         let control = Control::open(&name, running.shared.clone(), admission)
             .map_err(|e| format!("the control socket: {e}"))?;
         // The beats of the first 200 ms warm the caches and are in nobody's interval.

@@ -4,20 +4,17 @@
 //!   level 0, l0:  sensor.now ──► m0 ──► m1 ──► m2 …    every module hears the two before it
 //!   level 1, l1:                  … ──► m10 ──► m11 …  lower layers never hear higher ones
 //! ```
+//! They are the rig's modules without its suppressors.
+//!
 //! Must never leave out what a daemon does besides beating: traces, samples, the watcher, the recorder.
 
 use std::fmt::Write;
 
-use daemon::feeder::Fed;
-use daemon::machine::Machine;
-use daemon::recorder;
-use daemon::running::{self, Running};
-use ipc::wire::iceoryx::Domain;
+use daemon::running::Running;
 use ipc::wiring::creature::Creature;
-use ipc::wiring::directory::output_ports;
 use ipc::wiring::{Source, check};
 
-use crate::{modules, rig};
+use crate::{creature, modules, rig};
 
 /// The creature file of `layers` layers of `each` modules at 1 kHz on processor `cpu`.
 fn file(cpu: usize, layers: usize, each: usize) -> String {
@@ -73,15 +70,8 @@ fn checked(cpu: usize, layers: usize, each: usize) -> Creature {
 /// When the host refuses shared memory or a thread.
 pub fn start(cpu: usize, layers: usize, each: usize) -> Result<Running, String> {
     let mut creature = checked(cpu, layers, each);
-    let name = format!("crowd{}", std::process::id());
-    creature.name.clone_from(&name);
-    let domain = Domain::join(&name).map_err(|e| e.to_string())?;
-    let owned = domain
-        .own(&name, output_ports(&creature).count())
-        .map_err(|e| e.to_string())?;
-    let machine = Machine::new(creature, &kinds(), owned.page().clone(), None);
-    let settings = recorder::Settings::default();
-    running::start(&name, machine, owned, domain, &settings, None, Fed::default()).map_err(|e| e.to_string())
+    creature.name = format!("crowd{}", std::process::id());
+    creature::start(creature, &kinds())
 }
 
 #[cfg(test)]

@@ -214,7 +214,7 @@ fn beat_at_1khz(cpu: usize, beats: impl Beats, length: Duration) -> Result<Value
     }))
 }
 
-/// A whole daemon with such a creature: what share of a processor its group's thread takes, and what its other threads do.
+/// A whole daemon with a creature of such modules, but without suppressors: what share of a processor its group's thread takes, and what its other threads do.
 fn whole(cpu: usize, layers: usize, each: usize, length: Duration) -> Result<Value, String> {
     let running = crowd::start(cpu, layers, each)?;
     std::thread::sleep(Duration::from_millis(500));
@@ -329,7 +329,7 @@ fn print(report: &Value) {
     }
     let whole = |key: &str| report["daemon_at_1khz"][key].as_f64().unwrap_or(0.0);
     println!(
-        "\nin a whole daemon, traced and measured: {} modules in {} layers of one group on {} wires take {:.2} % in the group's \
+        "\nin a whole daemon, traced and measured: {} modules without suppressors in {} layers of one group on {} wires take {:.2} % in the group's \
          thread, {:.2} % in the ordinary threads beside it",
         whole("modules"),
         whole("layers"),
